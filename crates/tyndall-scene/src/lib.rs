@@ -1,0 +1,3 @@
+//! Scenes for `tyndall`.
+
+pub mod scene;

@@ -1,0 +1,235 @@
+//! What one picture is made of, as plain data: the same [`Frame`] drives the GPU and the CPU.
+//!
+//! World space is right-handed; lengths are metres, angles radians, colours linear RGB.
+
+use crate::techniques::Technique;
+
+/// One view of one moment: everything a technique needs besides pictures (depth, shadow maps).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Where the picture is taken from.
+    pub camera: Camera,
+    /// The lights, in the order of the inputs that belong to them. Their in-scattered light adds up.
+    pub lights: Vec<Light>,
+    /// The medium that fills all space.
+    pub medium: Medium,
+    /// How the integral is computed.
+    pub technique: Technique,
+}
+
+/// A camera: eye, orientation, projection and the convention of its depth buffer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// World-space position of the eye (orthographic: of the plane that depth is measured from) [m].
+    pub eye: [f32; 3],
+    /// World-space viewing direction; need not be of unit length, must not be zero.
+    pub forward: [f32; 3],
+    /// World-space direction that is up in the picture; need not be normal to `forward`, must not be parallel to it.
+    pub up: [f32; 3],
+    /// The projection.
+    pub projection: Projection,
+    /// True where the depth buffer holds 1 at `near` and 0 at `far` ("reversed z"), false for 0 at `near` and 1 at `far`.
+    pub reversed_depth: bool,
+}
+
+/// How view space becomes the picture. Depth runs along the viewing direction.
+///
+/// A point of the picture at normalised device coordinates (x, y) in [-1, 1], y up, lies at
+/// `center + half_extent * (x, y)` on the plane at view depth 1 (perspective) or at any depth (orthographic).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// All rays pass through the eye.
+    Perspective {
+        /// Tangents of half the horizontal and vertical field of view (> 0).
+        half_extent: [f32; 2],
+        /// Tangents of the picture's centre off the viewing direction; zero but for jitter and stereo.
+        center: [f32; 2],
+        /// View depth of the near plane [m] (> 0).
+        near: f32,
+        /// View depth where rays that hit nothing end [m] (> near, finite).
+        far: f32,
+    },
+    /// All rays are parallel to the viewing direction and start at view depth 0.
+    Orthographic {
+        /// Half the picture's width and height [m] (> 0).
+        half_extent: [f32; 2],
+        /// The picture's centre off the viewing axis [m].
+        center: [f32; 2],
+        /// View depth of the near plane [m].
+        near: f32,
+        /// View depth where rays that hit nothing end [m] (> near, finite).
+        far: f32,
+    },
+}
+
+impl Camera {
+    /// A symmetric perspective camera with reversed depth.
+    /// `yfov` is the whole vertical field of view [rad], `aspect` is width / height, `near` and `far` are view depths [m].
+    pub fn perspective(
+        eye: [f32; 3],
+        target: [f32; 3],
+        up: [f32; 3],
+        yfov: f32,
+        aspect: f32,
+        near: f32,
+        far: f32,
+    ) -> Self {
+        let tangent = (0.5 * yfov).tan();
+        Self {
+            eye,
+            forward: std::array::from_fn(|i| target[i] - eye[i]),
+            up,
+            projection: Projection::Perspective {
+                half_extent: [tangent * aspect, tangent],
+                center: [0.0; 2],
+                near,
+                far,
+            },
+            reversed_depth: true,
+        }
+    }
+}
+
+/// A light, the map that holds its shadows, and the picture it shines through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// What shines.
+    pub emitter: Emitter,
+    /// How the light's shadow map was made; `None`: nothing blocks this light.
+    pub shadow: Option<ShadowProjection>,
+    /// Where the light's texture lies; `None`: white light.
+    pub texture: Option<TexturePlacement>,
+}
+
+/// What shines, and how strongly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Emitter {
+    /// The sun: parallel light that reaches every unblocked point with its full illuminance (Chen 2011, section 3.1).
+    Directional {
+        /// The way the light travels; need not be of unit length.
+        direction: [f32; 3],
+        /// Irradiance on a surface that faces the light [W/m^2].
+        illuminance: [f32; 3],
+    },
+    /// A point that shines evenly to all sides.
+    Point {
+        /// World-space position [m].
+        position: [f32; 3],
+        /// Radiant intensity [W/sr].
+        intensity: [f32; 3],
+    },
+    /// A point that shines into a cone, with `KHR_lights_punctual`'s smooth edge.
+    Spot {
+        /// World-space position [m].
+        position: [f32; 3],
+        /// The cone's axis, the way the light travels; need not be of unit length.
+        direction: [f32; 3],
+        /// Radiant intensity on the axis [W/sr].
+        intensity: [f32; 3],
+        /// Angle from the axis where the light begins to fade [rad] (0 <= inner < outer).
+        inner: f32,
+        /// Angle from the axis where the light ends [rad] (< pi/2).
+        outer: f32,
+    },
+    /// A rectangle that shines to one side, along cross(edge_x, edge_y), with a cosine.
+    Rect {
+        /// World-space middle of the rectangle [m].
+        center: [f32; 3],
+        /// World-space edge from the picture's left to its right [m].
+        edge_x: [f32; 3],
+        /// World-space edge from the picture's top to its bottom [m].
+        edge_y: [f32; 3],
+        /// Radiance of the bright side [W/(m^2 sr)].
+        radiance: [f32; 3],
+        /// Number of point samples it is taken as (1 ..= 1024).
+        samples: u32,
+    },
+}
+
+/// How a shadow map was rendered. Depth is what a depth buffer holds: clip z / clip w in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShadowProjection {
+    /// One square or oblong map: a directional light's orthographic or a spot's perspective one.
+    Single {
+        /// World space to the map's clip space, column-major, z in [0, 1], y up.
+        clip_from_world: [[f32; 4]; 4],
+        /// True where the map holds 1 at its near plane and 0 at its far plane.
+        reversed_depth: bool,
+    },
+    /// Six square faces round a point light, 90 degrees each, in the order +X, -X, +Y, -Y, +Z, -Z
+    /// and with the orientation of WebGPU's and Direct3D's cube textures.
+    Cube {
+        /// Distance of each face's near plane along its axis [m] (> 0).
+        near: f32,
+        /// Distance of each face's far plane along its axis [m] (> near, finite).
+        far: f32,
+        /// True where the map holds 1 at its near plane and 0 at its far plane.
+        reversed_depth: bool,
+    },
+}
+
+/// Where a light's texture lies. The picture is bilinear between texel centres and black outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TexturePlacement {
+    /// Directional light: the picture fills this parallelogram, projected along the light.
+    Parallelogram {
+        /// World-space middle [m].
+        center: [f32; 3],
+        /// World-space edge from the picture's left to its right [m].
+        edge_x: [f32; 3],
+        /// World-space edge from the picture's top to its bottom [m].
+        edge_y: [f32; 3],
+    },
+    /// Spot light: the picture fills the square round the cone, tan(outer) to each side of the axis.
+    Cone {
+        /// World-space direction that is up in the picture; must not be parallel to the axis.
+        up: [f32; 3],
+    },
+    /// Point light: the picture is wrapped round the sphere of directions, longitude from left to right
+    /// (seen from the light, eastward), latitude from top to bottom.
+    Sphere {
+        /// World-space direction of the picture's upper edge.
+        up: [f32; 3],
+        /// World-space direction of the picture's middle; must not be parallel to `up`.
+        forward: [f32; 3],
+    },
+    /// Rectangular light: the picture fills the rectangle.
+    Rectangle,
+}
+
+/// A homogeneous medium, the sum of its components (air is Rayleigh + Mie).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Medium {
+    /// What the medium is mixed of; none is a vacuum. At most [`Medium::MAX_COMPONENTS`].
+    pub components: Vec<MediumComponent>,
+}
+
+impl Medium {
+    /// The most components a medium may have.
+    pub const MAX_COMPONENTS: usize = 4;
+}
+
+/// One constituent of a medium, with its own coefficients and phase function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MediumComponent {
+    /// Scattering coefficient per channel [1/m] (>= 0).
+    pub sigma_s: [f32; 3],
+    /// Absorption coefficient per channel [1/m] (>= 0).
+    pub sigma_a: [f32; 3],
+    /// How light is scattered.
+    pub phase: Phase,
+}
+
+/// A phase function of cos(theta), the cosine between the way light travels and the way it is scattered [1/sr].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// 1 / 4 pi.
+    Isotropic,
+    /// Small particles: 3 / 16 pi (1 + cos^2).
+    Rayleigh,
+    /// Henyey & Greenstein 1941.
+    HenyeyGreenstein {
+        /// Mean cosine (-1 < g < 1); forward scattering where positive.
+        g: f32,
+    },
+}
