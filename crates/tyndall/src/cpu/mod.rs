@@ -1,6 +1,20 @@
 //! The CPU backend: every formula in f64, on all cores, with nothing installed.
 
-use crate::frame::Frame;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::{
+    camera::{CameraRays, Ray},
+    error::PrepareError,
+    frame::{Frame, Light},
+    light::LightModel,
+    physics::medium::Optics,
+    shadow::Shadows,
+    techniques::Backends,
+    validate,
+};
 
 /// What the CPU backend reads besides the [`Frame`]; the same pictures the GPU backend is handed as textures.
 #[derive(Clone, Copy)]
@@ -104,16 +118,73 @@ pub struct InScatter {
 /// Called as work goes on with the number of pixels done and their total; from any thread.
 pub type Progress<'a> = &'a (dyn Fn(u64, u64) + Sync);
 
+/// A frame and its inputs as techniques see them.
+pub(crate) struct CpuScene<'a> {
+    pub(crate) optics: Optics,
+    pub(crate) lights: Vec<CpuLight<'a>>,
+    pub(crate) occluders: Option<&'a dyn Occluders>,
+}
+
+/// A light of the frame: one model, or a rectangle's samples.
+pub(crate) struct CpuLight<'a> {
+    pub(crate) models: Vec<LightModel<'a>>,
+    pub(crate) shadows: Option<Shadows<'a>>,
+}
+
+/// What computes the in-scattered light of one ray.
+pub(crate) trait RayIntegrator: Sync {
+    fn in_scatter(&self, ray: &Ray) -> DVec3;
+}
+
+impl<'a> CpuScene<'a> {
+    fn new(frame: &Frame, inputs: &CpuInputs<'a>) -> Self {
+        let light = |(light, inputs): (&Light, &CpuLightInputs<'a>)| CpuLight {
+            models: LightModel::samples(light, inputs.texture),
+            shadows: Shadows::new(&light.emitter, light.shadow.as_ref(), inputs),
+        };
+        Self {
+            optics: Optics::new(&frame.medium),
+            lights: frame.lights.iter().zip(inputs.lights).map(light).collect(),
+            occluders: inputs.occluders,
+        }
+    }
+}
+
 /// Computes the in-scattered light of a frame on all cores.
 ///
 /// # Errors
-/// [`PrepareError`](crate::PrepareError) where the frame or an input is out of range, missing or of the wrong size,
+/// [`PrepareError`] where the frame or an input is out of range, missing or of the wrong size,
 /// or where the technique cannot do it on the CPU.
 pub fn render(
     frame: &Frame,
     inputs: &CpuInputs<'_>,
     progress: Progress<'_>,
-) -> Result<InScatter, crate::PrepareError> {
-    let _ = (frame, inputs, progress);
-    unimplemented!()
+) -> Result<InScatter, PrepareError> {
+    validate::frame(frame)?;
+    validate::technique(frame, Backends::Cpu)?;
+    validate::cpu_inputs(frame, inputs)?;
+    let scene = CpuScene::new(frame, inputs);
+    let integrator = frame.technique.cpu(&scene)?;
+    let camera = CameraRays::new(&frame.camera, inputs.size);
+    let width = inputs.size[0];
+    let total = u64::from(width) * u64::from(inputs.size[1]);
+    let done = AtomicU64::new(0);
+    let mut pixels = vec![[0.0; 4]; inputs.depth.len()];
+    let rows = pixels
+        .par_chunks_mut(width as usize)
+        .zip(inputs.depth.par_chunks(width as usize));
+    rows.enumerate().for_each(|(y, (row, depths))| {
+        for (x, (pixel, depth)) in row.iter_mut().zip(depths).enumerate() {
+            let ray = camera.ray(x as u32, y as u32, *depth);
+            let light = integrator.in_scatter(&ray);
+            let transmittance = scene.optics.transmittance(ray.length).element_sum() / 3.0;
+            *pixel = light.extend(transmittance).as_vec4().to_array();
+        }
+        let width = u64::from(width);
+        progress(done.fetch_add(width, Ordering::Relaxed) + width, total);
+    });
+    Ok(InScatter {
+        size: inputs.size,
+        pixels,
+    })
 }

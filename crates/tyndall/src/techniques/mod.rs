@@ -1,7 +1,13 @@
-//! The techniques, and the one table of them.
+//! The techniques, and the one table of them. Each folder's first page is its manual.
 
+mod params;
 pub mod ray_march;
 pub mod reference;
+
+use crate::{cpu::CpuScene, error::PrepareError};
+use params::Parameters;
+
+pub use params::{ParamError, ParamInfo, Value};
 
 /// A technique and its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,57 +16,6 @@ pub enum Technique {
     Reference(reference::Params),
     /// Brute force.
     RayMarch(ray_march::Params),
-}
-
-/// A parameter's value, as a file or a command line gives it.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// A whole number.
-    Integer(i64),
-    /// A real number; whole numbers are taken for reals too.
-    Real(f64),
-    /// A word.
-    Word(String),
-    /// Yes or no.
-    Bool(bool),
-}
-
-/// What a parameter is called, means and may be.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ParamInfo {
-    /// Its key in `[technique]`.
-    pub key: &'static str,
-    /// One line: what it does, with its unit.
-    pub about: &'static str,
-    /// What it may be, in words.
-    pub range: &'static str,
-    /// Its default.
-    pub default: Value,
-}
-
-/// Why a parameter was refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ParamError {
-    /// The technique has no such parameter.
-    #[error("technique `{technique}` has no parameter `{key}`; it has {known}")]
-    Unknown {
-        /// The technique.
-        technique: &'static str,
-        /// The key that was given.
-        key: String,
-        /// The keys there are, joined by commas.
-        known: String,
-    },
-    /// The value is not of the range.
-    #[error("`{key}` must be {expected}, found {found}")]
-    OutOfRange {
-        /// The parameter.
-        key: String,
-        /// What it may be.
-        expected: &'static str,
-        /// What was given.
-        found: String,
-    },
 }
 
 /// Which backends a technique runs on.
@@ -74,6 +29,31 @@ pub enum Backends {
     Both,
 }
 
+/// A kind of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightKind {
+    /// Parallel light.
+    Directional,
+    /// A point.
+    Point,
+    /// A point with a cone.
+    Spot,
+    /// A rectangle.
+    Rect,
+}
+
+impl LightKind {
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Directional => "directional",
+            Self::Point => "point",
+            Self::Spot => "spot",
+            Self::Rect => "rect",
+        }
+    }
+}
+
 /// A technique's entry in the table.
 pub struct TechniqueInfo {
     /// Its name in files and on the command line.
@@ -82,16 +62,22 @@ pub struct TechniqueInfo {
     pub about: &'static str,
     /// Where it was published.
     pub citation: &'static str,
-    /// The kinds of light it can do, by name: directional, point, spot, rect.
-    pub lights: &'static [&'static str],
+    /// The kinds of light it can do.
+    pub lights: &'static [LightKind],
     /// Where it runs.
     pub backends: Backends,
     /// The technique with its default parameters.
     pub default: fn() -> Technique,
 }
 
-/// Every technique, in the order they are listed to people.
-pub const TABLE: &[TechniqueInfo] = &[];
+/// Every technique, in the order they are listed to people; the first is the default.
+pub const TABLE: &[TechniqueInfo] = &[ray_march::INFO, reference::INFO];
+
+impl Default for Technique {
+    fn default() -> Self {
+        (TABLE[0].default)()
+    }
+}
 
 impl Technique {
     /// The technique of this name with default parameters.
@@ -101,12 +87,18 @@ impl Technique {
 
     /// Its entry in the [`TABLE`].
     pub fn info(&self) -> &'static TechniqueInfo {
-        unimplemented!()
+        match self {
+            Self::Reference(_) => &reference::INFO,
+            Self::RayMarch(_) => &ray_march::INFO,
+        }
     }
 
-    /// Its parameters as they are now, with what each may be.
-    pub fn params(&self) -> Vec<(ParamInfo, Value)> {
-        unimplemented!()
+    /// Its parameters: as they are now, and what each may be.
+    pub fn params(&self) -> Vec<ParamInfo> {
+        match self {
+            Self::Reference(p) => p.list(),
+            Self::RayMarch(p) => p.list(),
+        }
     }
 
     /// Sets one parameter.
@@ -114,7 +106,72 @@ impl Technique {
     /// # Errors
     /// Where there is no such key or the value is not of its range.
     pub fn set(&mut self, key: &str, value: &Value) -> Result<(), ParamError> {
-        let _ = (key, value);
-        unimplemented!()
+        match self {
+            Self::Reference(p) => p.set(key, value),
+            Self::RayMarch(p) => p.set(key, value),
+        }
+    }
+
+    /// What computes a ray on the CPU.
+    pub(crate) fn cpu<'a>(
+        &'a self,
+        scene: &'a CpuScene<'a>,
+    ) -> Result<Box<dyn crate::cpu::RayIntegrator + 'a>, PrepareError> {
+        match self {
+            Self::Reference(p) => reference::cpu::integrator(p, scene),
+            Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_find_their_entry() {
+        for entry in TABLE {
+            let technique = Technique::from_name(entry.name).expect("in the table");
+            assert_eq!(technique.info().name, entry.name);
+            assert_eq!(TABLE.iter().filter(|t| t.name == entry.name).count(), 1);
+        }
+        assert_eq!(Technique::from_name("magic"), None);
+    }
+
+    #[test]
+    fn every_default_can_be_set_again() {
+        for entry in TABLE {
+            let mut technique = (entry.default)();
+            for param in technique.params() {
+                technique
+                    .set(param.key, &param.default)
+                    .expect("a default is in range");
+            }
+            assert_eq!(technique, (entry.default)());
+        }
+    }
+
+    #[test]
+    fn wrong_parameters_are_refused_with_what_was_expected() {
+        let mut technique = Technique::from_name("ray-march").expect("in the table");
+        let before = technique.clone();
+        let unknown = technique.set("stepz", &Value::Integer(3)).unwrap_err();
+        assert_eq!(
+            unknown.to_string(),
+            "technique `ray-march` has no parameter `stepz`; it has steps, spacing"
+        );
+        for wrong in [
+            Value::Integer(0),
+            Value::Integer(-4),
+            Value::Real(12.5),
+            Value::Word("many".into()),
+        ] {
+            let error = technique.set("steps", &wrong).unwrap_err();
+            assert!(
+                error.to_string().contains(&format!("found {wrong}")),
+                "{error}"
+            );
+        }
+        assert_eq!(technique, before);
     }
 }

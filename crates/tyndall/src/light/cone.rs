@@ -1,0 +1,83 @@
+//! Where a ray is inside a spot light's cone.
+
+/// The part of the ray `q0 + s v` inside the cone of unit `axis` and half angle acos(`cos_outer`) < pi/2 about the
+/// origin, intersected with `[a, b]`; empty (`a >= b`) where it misses. `v` has unit length.
+///
+/// The solid cone is convex, so there is one interval: between the two roots of
+/// `(q . axis)^2 = cos^2 |q|^2` where the ray crosses the cone sideways, else beyond one of them.
+pub fn cone_interval(
+    q0: glam::DVec3,
+    v: glam::DVec3,
+    axis: glam::DVec3,
+    cos_outer: f64,
+    [a, b]: [f64; 2],
+) -> [f64; 2] {
+    let cos2 = cos_outer * cos_outer;
+    let (v_axis, q_axis) = (v.dot(axis), q0.dot(axis));
+    let qa = v_axis * v_axis - cos2;
+    let qb = q_axis * v_axis - cos2 * q0.dot(v);
+    let qc = q_axis * q_axis - cos2 * q0.dot(q0);
+    let discriminant = qb * qb - qa * qc;
+    if discriminant <= 0.0 {
+        // Tangent to the cone or clear of it; a ray along a direction inside the cone always has two roots.
+        return [a, a];
+    }
+    // Citardauq keeps both roots exact where qa is near zero.
+    let w = -(qb + qb.signum() * discriminant.sqrt());
+    let (r0, r1) = (w / qa, qc / w);
+    let (low, high) = (r0.min(r1), r0.max(r1));
+    let (from, to) = if qa < 0.0 {
+        let middle = 0.5 * (low + high);
+        if q_axis + middle * v_axis <= 0.0 {
+            return [a, a];
+        }
+        (low, high)
+    } else if v_axis > 0.0 {
+        (high, f64::INFINITY)
+    } else {
+        (f64::NEG_INFINITY, low)
+    };
+    [from.max(a), to.min(b)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// A small linear congruential sequence in [-1, 1].
+    fn sequence() -> impl FnMut() -> f64 {
+        let mut state = 1_u64;
+        move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    #[test]
+    fn agrees_with_the_angle_at_every_point() {
+        let mut next = sequence();
+        let mut inside_seen = 0;
+        for _ in 0..4000 {
+            let mut vector = || DVec3::new(next(), next(), next());
+            let (q0, v, axis) = (3.0 * vector(), vector().normalize(), vector().normalize());
+            let cos_outer = (0.05 + 1.45 * (0.5 + 0.5 * next())).cos();
+            let [a, b] = cone_interval(q0, v, axis, cos_outer, [0.0, 10.0]);
+            for i in 0..50 {
+                let s = 0.2 * f64::from(i) + 0.1;
+                let q = q0 + s * v;
+                let margin = q.dot(axis) - cos_outer * q.length();
+                if margin.abs() > 1e-9 {
+                    assert_eq!(s > a && s < b, margin > 0.0, "s {s}, [{a}, {b}], {margin}");
+                    inside_seen += i32::from(margin > 0.0);
+                }
+            }
+        }
+        assert!(
+            inside_seen > 10_000,
+            "only {inside_seen} points inside a cone"
+        );
+    }
+}

@@ -1,0 +1,37 @@
+// A medium: extinction, and scattering by angle, summed over its components.
+
+const MEDIUM_MAX_COMPONENTS: u32 = 4u;
+
+const MEDIUM_PHASE_ISOTROPIC: u32 = 0u;
+const MEDIUM_PHASE_RAYLEIGH: u32 = 1u;
+const MEDIUM_PHASE_HG: u32 = 2u;
+
+struct MediumComponent {
+    sigma_s: vec3f, // [1/m]
+    phase: u32,
+    g: f32,
+}
+
+struct Medium {
+    sigma_t: vec3f, // sigma_s + sigma_a summed over the components [1/m]
+    count: u32,
+    components: array<MediumComponent, MEDIUM_MAX_COMPONENTS>,
+}
+
+fn medium_phase(component: MediumComponent, cos_theta: f32) -> f32 {
+    switch component.phase {
+        case MEDIUM_PHASE_RAYLEIGH: { return phase_rayleigh(cos_theta); }
+        case MEDIUM_PHASE_HG: { return phase_hg(component.g, cos_theta); }
+        default: { return phase_isotropic(); }
+    }
+}
+
+// sigma_s rho(theta), summed over the components [1/(m sr)].
+fn medium_scattering(cos_theta: f32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < frame.medium.count; i++) {
+        let component = frame.medium.components[i];
+        sum += component.sigma_s * medium_phase(component, cos_theta);
+    }
+    return sum;
+}

@@ -1,0 +1,5 @@
+//! The physics, as pure functions by topic; each WGSL file holds the twins of its Rust neighbour.
+
+pub mod medium;
+pub mod phase;
+pub mod transmittance;

@@ -1,0 +1,204 @@
+//! Shadow maps: what a light sees, looked up by the point it shines on.
+//!
+//! A lookup takes the texel that a point falls on, without filter: the medium is lit iff it is not farther from the
+//! light than the texel's depth. The medium needs no bias: a texel's error is as often too near as too far, and the
+//! surface itself has no volume. Outside the map, and where nothing was drawn, everything is lit.
+
+pub mod walk;
+
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+
+use crate::{
+    cpu::{CpuLightInputs, GlassMap, ShadowMap},
+    frame::{Emitter, ShadowProjection},
+    physics::medium::reals,
+};
+
+/// Directions of a cube face's u, v and axis in world space, in the order +X, -X, +Y, -Y, +Z, -Z
+/// (WebGPU specification, "cube texture view"): u to the right, v downwards, seen from inside.
+const CUBE_FACES: [[DVec3; 3]; 6] = [
+    [DVec3::NEG_Z, DVec3::NEG_Y, DVec3::X],
+    [DVec3::Z, DVec3::NEG_Y, DVec3::NEG_X],
+    [DVec3::X, DVec3::Z, DVec3::Y],
+    [DVec3::X, DVec3::NEG_Z, DVec3::NEG_Y],
+    [DVec3::X, DVec3::NEG_Y, DVec3::Z],
+    [DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z],
+];
+
+/// One face of a shadow map's projection.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    /// World space to clip space, z in [0, 1] with 1 nearest to the light ("reversed"), y up.
+    pub clip_from_world: DMat4,
+}
+
+/// The faces a shadow map was drawn with, with depth turned so that 1 is nearest to the light.
+/// `None` where a cube is given to a light without a position.
+pub fn faces(emitter: &Emitter, projection: &ShadowProjection) -> Option<Vec<Face>> {
+    let reverse = |reversed: bool, clip_from_world: DMat4| {
+        let flip = DMat4::from_cols(
+            DVec4::X,
+            DVec4::Y,
+            -DVec4::Z,
+            DVec4::new(0.0, 0.0, 1.0, 1.0),
+        );
+        Face {
+            clip_from_world: if reversed {
+                clip_from_world
+            } else {
+                flip * clip_from_world
+            },
+        }
+    };
+    match *projection {
+        ShadowProjection::Single {
+            clip_from_world,
+            reversed_depth,
+        } => {
+            let matrix = DMat4::from_cols_array_2d(&clip_from_world.map(|c| c.map(f64::from)));
+            Some(vec![reverse(reversed_depth, matrix)])
+        }
+        ShadowProjection::Cube { near, far, .. } => {
+            let (Emitter::Point { position, .. } | Emitter::Spot { position, .. }) = *emitter
+            else {
+                return None;
+            };
+            let (near, far) = (f64::from(near), f64::from(far));
+            Some(
+                CUBE_FACES
+                    .iter()
+                    .map(|axes| Face {
+                        clip_from_world: cube_face(axes, reals(position), near, far),
+                    })
+                    .collect(),
+            )
+        }
+    }
+}
+
+/// A 90 degree perspective projection along `axis` with depth 1 at `near` and 0 at `far`.
+fn cube_face([u, v, axis]: &[DVec3; 3], position: DVec3, near: f64, far: f64) -> DMat4 {
+    let view = DMat3::from_cols(*u, -*v, *axis).transpose();
+    let view_from_world = DMat4::from_mat3(view) * DMat4::from_translation(-position);
+    let scale = near / (far - near);
+    let clip_from_view = DMat4::from_cols(
+        DVec4::X,
+        DVec4::Y,
+        DVec4::new(0.0, 0.0, -scale, 1.0),
+        DVec4::new(0.0, 0.0, scale * far, 0.0),
+    );
+    clip_from_view * view_from_world
+}
+
+/// A light's shadow map and coloured glass, ready to be asked about points.
+#[derive(Clone, Debug)]
+pub struct Shadows<'a> {
+    faces: Vec<Face>,
+    /// Where a cube's faces meet; unused for a single map.
+    center: DVec3,
+    reversed: bool,
+    map: &'a ShadowMap,
+    glass: Option<&'a GlassMap>,
+}
+
+impl<'a> Shadows<'a> {
+    /// `None` where the light has no shadow map.
+    pub fn new(
+        emitter: &Emitter,
+        projection: Option<&ShadowProjection>,
+        inputs: &CpuLightInputs<'a>,
+    ) -> Option<Self> {
+        let projection = projection?;
+        let (ShadowProjection::Single { reversed_depth, .. }
+        | ShadowProjection::Cube { reversed_depth, .. }) = *projection;
+        let center = match *emitter {
+            Emitter::Point { position, .. } | Emitter::Spot { position, .. } => reals(position),
+            Emitter::Directional { .. } | Emitter::Rect { .. } => DVec3::ZERO,
+        };
+        Some(Self {
+            faces: faces(emitter, projection)?,
+            center,
+            reversed: reversed_depth,
+            map: inputs.shadow_map?,
+            glass: inputs.glass,
+        })
+    }
+
+    /// What light on its way to `point` is multiplied by: 0 where it is blocked.
+    pub fn tint(&self, point: DVec3) -> DVec3 {
+        let face = self.face_of(point);
+        let clip = self.faces[face].clip_from_world * point.extend(1.0);
+        let Some(uv) = picture_point(clip) else {
+            return DVec3::ONE;
+        };
+        let depth = clip.z / clip.w;
+        let lit = texel_index(uv, self.map.size)
+            .is_none_or(|texel| reaches(depth, self.stored_depth(face, texel)));
+        if !lit {
+            return DVec3::ZERO;
+        }
+        let Some((glass, texel)) = self.glass.and_then(|g| Some((g, texel_index(uv, g.size)?)))
+        else {
+            return DVec3::ONE;
+        };
+        (0..glass.layers)
+            .map(|layer| self.glass_layer(glass, face, layer, texel))
+            .filter(|(layer_depth, _)| !reaches(depth, *layer_depth))
+            .map(|(_, tint)| tint)
+            .product()
+    }
+
+    /// The face whose axis is nearest to the direction from the centre.
+    fn face_of(&self, point: DVec3) -> usize {
+        if self.faces.len() == 1 {
+            return 0;
+        }
+        let q = point - self.center;
+        let a = q.abs();
+        let (axis, value) = if a.x >= a.y && a.x >= a.z {
+            (0, q.x)
+        } else if a.y >= a.z {
+            (1, q.y)
+        } else {
+            (2, q.z)
+        };
+        2 * axis + usize::from(value < 0.0)
+    }
+
+    /// A texel's depth, 1 nearest to the light.
+    fn stored_depth(&self, face: usize, texel: usize) -> f64 {
+        let faces = self.map.size[0] as usize * self.map.size[1] as usize;
+        self.near_is_one(self.map.depth[face * faces + texel])
+    }
+
+    fn glass_layer(&self, glass: &GlassMap, face: usize, layer: u32, texel: usize) -> (f64, DVec3) {
+        let plane = glass.size[0] as usize * glass.size[1] as usize;
+        let index = (face * glass.layers as usize + layer as usize) * plane + texel;
+        let [r, g, b, depth] = glass.texels[index];
+        (self.near_is_one(depth), reals([r, g, b]))
+    }
+
+    fn near_is_one(&self, depth: f32) -> f64 {
+        let depth = f64::from(depth);
+        if self.reversed { depth } else { 1.0 - depth }
+    }
+}
+
+/// True iff light reaches a point at `depth` past a texel at `stored` (1 nearest to the light; 0 is nothing at all).
+fn reaches(depth: f64, stored: f64) -> bool {
+    stored <= 0.0 || depth >= stored
+}
+
+/// The place on the map, (0, 0) top left, (1, 1) bottom right, of a point in front of the light.
+fn picture_point(clip: DVec4) -> Option<DVec2> {
+    (clip.w > 0.0).then(|| DVec2::new(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w))
+}
+
+fn texel_index(uv: DVec2, size: [u32; 2]) -> Option<usize> {
+    let texel = (uv * DVec2::new(f64::from(size[0]), f64::from(size[1]))).floor();
+    let inside = texel.x >= 0.0
+        && texel.y >= 0.0
+        && texel.x < f64::from(size[0])
+        && texel.y < f64::from(size[1]);
+    inside.then(|| texel.y as usize * size[0] as usize + texel.x as usize)
+}

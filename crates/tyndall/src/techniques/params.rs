@@ -1,0 +1,150 @@
+//! Parameters that files and command lines set by name.
+
+use std::ops::RangeInclusive;
+
+/// A parameter's value, as a file or a command line gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A whole number.
+    Integer(i64),
+    /// A real number; whole numbers are taken for reals too.
+    Real(f64),
+    /// A word.
+    Word(String),
+    /// Yes or no.
+    Bool(bool),
+}
+
+impl Value {
+    /// The whole number, if it is one within the range.
+    pub(crate) fn integer(&self, range: RangeInclusive<u32>) -> Option<u32> {
+        match self {
+            Self::Integer(n) => u32::try_from(*n).ok().filter(|n| range.contains(n)),
+            _ => None,
+        }
+    }
+
+    /// The number, if it is one within the range.
+    pub(crate) fn real(&self, range: RangeInclusive<f64>) -> Option<f64> {
+        match self {
+            Self::Integer(n) => Some(*n as f64),
+            Self::Real(x) => Some(*x),
+            _ => None,
+        }
+        .filter(|x| range.contains(x))
+    }
+
+    /// What stands beside the word in the list.
+    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+        match self {
+            Self::Word(word) => choices.iter().find(|(name, _)| name == word).map(|c| c.1),
+            _ => None,
+        }
+    }
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Integer(n) => write!(f, "{n}"),
+            Self::Real(x) => write!(f, "{x}"),
+            Self::Word(word) => write!(f, "\"{word}\""),
+            Self::Bool(b) => write!(f, "{b}"),
+        }
+    }
+}
+
+/// The word that stands beside a value in the list.
+pub(crate) fn word<T: PartialEq>(value: &T, choices: &[(&str, T)]) -> Value {
+    let name = choices
+        .iter()
+        .find(|(_, v)| v == value)
+        .map_or("", |(name, _)| name);
+    Value::Word(name.to_owned())
+}
+
+/// What a parameter is called, means and may be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParamInfo {
+    /// Its key in `[technique]`.
+    pub key: &'static str,
+    /// One line: what it does, with its unit.
+    pub about: &'static str,
+    /// What it may be, in words.
+    pub range: &'static str,
+    /// Its default.
+    pub default: Value,
+    /// What it is now.
+    pub value: Value,
+}
+
+/// Why a parameter was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ParamError {
+    /// The technique has no such parameter.
+    #[error("technique `{technique}` has no parameter `{key}`; it has {known}")]
+    Unknown {
+        /// The technique.
+        technique: &'static str,
+        /// The key that was given.
+        key: String,
+        /// The keys there are, joined by commas.
+        known: String,
+    },
+    /// The value is not of the range.
+    #[error("`{key}` must be {expected}, found {found}")]
+    OutOfRange {
+        /// The parameter.
+        key: String,
+        /// What it may be.
+        expected: &'static str,
+        /// What was given.
+        found: String,
+    },
+}
+
+/// One parameter of the parameters `P`.
+pub(crate) struct Param<P> {
+    pub(crate) key: &'static str,
+    pub(crate) about: &'static str,
+    pub(crate) range: &'static str,
+    pub(crate) get: fn(&P) -> Value,
+    /// Takes a value, or leaves the parameters as they are and says `None`.
+    pub(crate) set: fn(&mut P, &Value) -> Option<()>,
+}
+
+/// The parameters of a technique.
+pub(crate) trait Parameters: Default + Sized + 'static {
+    /// The technique's name.
+    const TECHNIQUE: &'static str;
+    /// All of them.
+    const PARAMS: &'static [Param<Self>];
+
+    fn list(&self) -> Vec<ParamInfo> {
+        let default = Self::default();
+        let info = |p: &Param<Self>| ParamInfo {
+            key: p.key,
+            about: p.about,
+            range: p.range,
+            default: (p.get)(&default),
+            value: (p.get)(self),
+        };
+        Self::PARAMS.iter().map(info).collect()
+    }
+
+    fn set(&mut self, key: &str, value: &Value) -> Result<(), ParamError> {
+        let Some(param) = Self::PARAMS.iter().find(|p| p.key == key) else {
+            let keys: Vec<_> = Self::PARAMS.iter().map(|p| p.key).collect();
+            return Err(ParamError::Unknown {
+                technique: Self::TECHNIQUE,
+                key: key.to_owned(),
+                known: keys.join(", "),
+            });
+        };
+        (param.set)(self, value).ok_or_else(|| ParamError::OutOfRange {
+            key: key.to_owned(),
+            expected: param.range,
+            found: value.to_string(),
+        })
+    }
+}
