@@ -1,6 +1,8 @@
 //! Real-time volumetric shadows in single-scattering media.
 
 pub mod camera;
+#[cfg(feature = "gpu")]
+mod composite;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 mod effect;

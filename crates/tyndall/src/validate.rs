@@ -371,10 +371,7 @@ pub(crate) fn cpu_inputs(frame: &Frame, inputs: &CpuInputs<'_>) -> Checked {
     light_inputs(frame, given)?;
     for (i, (light, inputs)) in frame.lights.iter().zip(inputs.lights).enumerate() {
         let field = |key: &str| format!("inputs.lights[{i}].{key}");
-        let faces = match light.shadow {
-            Some(ShadowProjection::Cube { .. }) => 6,
-            _ => 1,
-        };
+        let faces = faces(light) as usize;
         if let Some(map) = inputs.shadow_map {
             let texels = area(&field("shadow_map.size"), map.size)?;
             size(&field("shadow_map.depth"), faces * texels, map.depth.len())?;
@@ -419,4 +416,97 @@ fn size(field: &str, expected: usize, found: usize) -> Checked {
         expected,
         found,
     })
+}
+
+/// Faces of a light's shadow map.
+pub(crate) fn faces(light: &Light) -> u32 {
+    match light.shadow {
+        Some(ShadowProjection::Cube { .. }) => 6,
+        _ => 1,
+    }
+}
+
+/// Checks the textures of the GPU backend.
+#[cfg(feature = "gpu")]
+pub(crate) fn gpu_inputs(
+    frame: &Frame,
+    inputs: &crate::effect::FrameInputs<'_>,
+    view_size: [u32; 2],
+) -> Checked {
+    let depth = inputs.depth.texture();
+    require(
+        [depth.width(), depth.height()] == view_size,
+        "inputs.depth",
+        "a texture of the view's size",
+        [depth.width(), depth.height()],
+    )?;
+    depth_texture("inputs.depth", depth)?;
+    let given = inputs.lights.iter().map(|l| GivenInputs {
+        shadow_map: l.shadow_map.is_some(),
+        glass: l.glass.is_some(),
+        texture: l.texture.is_some(),
+    });
+    light_inputs(frame, given)?;
+    for (i, (light, inputs)) in frame.lights.iter().zip(inputs.lights).enumerate() {
+        let field = |key: &str| format!("inputs.lights[{i}].{key}");
+        if let Some(map) = inputs.shadow_map {
+            depth_texture(&field("shadow_map"), map.texture())?;
+            layers(&field("shadow_map"), map.texture(), |n| n == faces(light))?;
+        }
+        if let Some(glass) = inputs.glass {
+            let texture = glass.texture();
+            bindable(&field("glass"), texture)?;
+            require(
+                texture.format() == wgpu::TextureFormat::Rg32Uint,
+                field("glass"),
+                "a texture of format Rg32Uint",
+                texture.format(),
+            )?;
+            layers(&field("glass"), texture, |n| n % faces(light) == 0)?;
+        }
+        if let Some(texture) = inputs.texture {
+            bindable(&field("texture"), texture.texture())?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(feature = "gpu")]
+fn bindable(field: &str, texture: &wgpu::Texture) -> Checked {
+    require(
+        texture
+            .usage()
+            .contains(wgpu::TextureUsages::TEXTURE_BINDING),
+        field,
+        "a texture with usage TEXTURE_BINDING",
+        texture.usage(),
+    )?;
+    require(
+        texture.sample_count() == 1,
+        field,
+        "a texture of one sample",
+        texture.sample_count(),
+    )
+}
+
+#[cfg(feature = "gpu")]
+fn depth_texture(field: &str, texture: &wgpu::Texture) -> Checked {
+    bindable(field, texture)?;
+    require(
+        texture.format().has_depth_aspect(),
+        field,
+        "a texture of a depth format",
+        texture.format(),
+    )
+}
+
+#[cfg(feature = "gpu")]
+fn layers(field: &str, texture: &wgpu::Texture, fits: impl Fn(u32) -> bool) -> Checked {
+    let found = texture.depth_or_array_layers();
+    require(
+        fits(found),
+        field,
+        "one layer a face of the light's shadow map (glass: some layers a face)",
+        found,
+    )
 }

@@ -16,6 +16,8 @@
 //! Where it fails: shadows thinner than a step are hit or missed by chance, which shows as bands. Doubling N halves them.
 
 pub(crate) mod cpu;
+#[cfg(feature = "gpu")]
+pub(crate) mod gpu;
 
 use super::{
     Backends, LightKind, Technique, TechniqueInfo, Value,

@@ -1,0 +1,108 @@
+//! Bind group layouts that all passes share, and the pictures that stand in for inputs a light does not have.
+
+use std::num::NonZeroU64;
+
+use super::uniforms::{FrameUniform, LightUniform};
+
+/// A uniform block of this type at `binding`, for fragments and compute.
+pub(crate) fn uniform<T>(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    entry(
+        binding,
+        wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: NonZeroU64::new(size_of::<T>() as u64),
+        },
+    )
+}
+
+fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    }
+}
+
+fn texture(
+    binding: u32,
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
+    entry(
+        binding,
+        wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
+        },
+    )
+}
+
+/// Bind group 0: the frame's uniforms, the depth buffer, the in-scattered light so far.
+pub(crate) fn frame(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    use wgpu::{TextureSampleType as Sample, TextureViewDimension as Dimension};
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("tyndall frame"),
+        entries: &[
+            uniform::<FrameUniform>(0),
+            texture(1, Sample::Depth, Dimension::D2),
+            texture(2, Sample::Float { filterable: false }, Dimension::D2),
+        ],
+    })
+}
+
+/// Bind group 1: a light's uniforms, shadow map, glass and picture.
+pub(crate) fn light(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    use wgpu::{TextureSampleType as Sample, TextureViewDimension as Dimension};
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("tyndall light"),
+        entries: &[
+            uniform::<LightUniform>(0),
+            texture(1, Sample::Depth, Dimension::D2Array),
+            texture(2, Sample::Uint, Dimension::D2Array),
+            texture(3, Sample::Float { filterable: true }, Dimension::D2),
+            entry(
+                4,
+                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            ),
+        ],
+    })
+}
+
+/// What is bound where a light has no such picture.
+pub(crate) struct Absent {
+    pub(crate) shadow_map: wgpu::TextureView,
+    pub(crate) glass: wgpu::TextureView,
+    pub(crate) picture: wgpu::TextureView,
+    pub(crate) light: wgpu::TextureView,
+}
+
+impl Absent {
+    pub(crate) fn new(device: &wgpu::Device) -> Self {
+        let texel = |format, dimension| {
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("tyndall absent input"),
+                size: wgpu::Extent3d::default(),
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(dimension),
+                ..Default::default()
+            })
+        };
+        use wgpu::{TextureFormat as Format, TextureViewDimension as Dimension};
+        Self {
+            shadow_map: texel(Format::Depth32Float, Dimension::D2Array),
+            glass: texel(Format::Rg32Uint, Dimension::D2Array),
+            picture: texel(Format::Rgba8Unorm, Dimension::D2),
+            light: texel(Format::Rgba16Float, Dimension::D2),
+        }
+    }
+}

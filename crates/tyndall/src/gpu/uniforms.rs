@@ -1,0 +1,331 @@
+//! The uniform blocks, byte for byte as their WGSL namesakes; positions are relative to the eye.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DMat4, DVec3};
+
+use crate::{
+    camera::CameraRays,
+    frame::{self, Emitter, Phase, Projection, ShadowProjection},
+    light::texture::{MappingKind, TextureMapping},
+    physics::medium::{Optics, reals},
+    shadow,
+};
+
+/// `Frame` of `frame.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct FrameUniform {
+    pub(crate) camera: CameraUniform,
+    pub(crate) medium: MediumUniform,
+}
+
+/// `Camera` of `camera.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct CameraUniform {
+    pub(crate) right: [f32; 3],
+    pub(crate) near: f32,
+    pub(crate) up: [f32; 3],
+    pub(crate) far: f32,
+    pub(crate) forward: [f32; 3],
+    pub(crate) flags: u32,
+    pub(crate) half_extent: [f32; 2],
+    pub(crate) center: [f32; 2],
+    pub(crate) size: [f32; 2],
+    pad: [f32; 2],
+}
+
+/// `Medium` of `medium.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct MediumUniform {
+    pub(crate) sigma_t: [f32; 3],
+    pub(crate) count: u32,
+    pub(crate) components: [MediumComponentUniform; frame::Medium::MAX_COMPONENTS],
+}
+
+/// `MediumComponent` of `medium.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct MediumComponentUniform {
+    pub(crate) sigma_s: [f32; 3],
+    pub(crate) phase: u32,
+    pub(crate) g: f32,
+    pad: [f32; 3],
+}
+
+/// `Light` of `light.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct LightUniform {
+    pub(crate) color: [f32; 3],
+    pub(crate) cos_inner: f32,
+    pub(crate) position: [f32; 3],
+    pub(crate) cos_outer: f32,
+    pub(crate) direction: [f32; 3],
+    pub(crate) glass_layers: u32,
+    pub(crate) texture_rows: [[f32; 4]; 3],
+    pub(crate) clip_from_world: [[f32; 4]; 4],
+    pub(crate) cube_depth: [f32; 2],
+    pub(crate) standard_depth: u32,
+    pad: u32,
+}
+
+/// Which kind of light a pipeline is made for: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND`, `SHADOW_GLASS`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct LightVariant {
+    pub(crate) kind: u32,
+    pub(crate) texture: u32,
+    pub(crate) shadow: u32,
+    pub(crate) glass: bool,
+}
+
+impl LightVariant {
+    /// The values of the shader's overrides.
+    pub(crate) fn constants(self) -> [(&'static str, f64); 4] {
+        [
+            ("LIGHT_KIND", self.kind.into()),
+            ("LIGHT_TEXTURE", self.texture.into()),
+            ("SHADOW_KIND", self.shadow.into()),
+            ("SHADOW_GLASS", f64::from(u8::from(self.glass))),
+        ]
+    }
+}
+
+const CAMERA_REVERSED_DEPTH: u32 = 1;
+const CAMERA_ORTHOGRAPHIC: u32 = 2;
+
+impl FrameUniform {
+    pub(crate) fn new(frame: &frame::Frame, rays: &CameraRays, size: [u32; 2]) -> Self {
+        Self {
+            camera: CameraUniform::new(&frame.camera, rays, size),
+            medium: MediumUniform::new(&frame.medium),
+        }
+    }
+}
+
+impl CameraUniform {
+    fn new(camera: &frame::Camera, rays: &CameraRays, size: [u32; 2]) -> Self {
+        let (projection_flag, half_extent, center, near, far) = match camera.projection {
+            Projection::Perspective {
+                half_extent,
+                center,
+                near,
+                far,
+            } => (0, half_extent, center, near, far),
+            Projection::Orthographic {
+                half_extent,
+                center,
+                near,
+                far,
+            } => (CAMERA_ORTHOGRAPHIC, half_extent, center, near, far),
+        };
+        let depth_flag = if camera.reversed_depth {
+            CAMERA_REVERSED_DEPTH
+        } else {
+            0
+        };
+        Self {
+            right: floats(rays.right),
+            near,
+            up: floats(rays.up),
+            far,
+            forward: floats(rays.forward),
+            flags: projection_flag | depth_flag,
+            half_extent,
+            center,
+            size: size.map(|n| n as f32),
+            pad: [0.0; 2],
+        }
+    }
+}
+
+impl MediumUniform {
+    fn new(medium: &frame::Medium) -> Self {
+        let mut components = [MediumComponentUniform::zeroed(); frame::Medium::MAX_COMPONENTS];
+        for (slot, component) in components.iter_mut().zip(&medium.components) {
+            let (phase, g) = match component.phase {
+                Phase::Isotropic => (0, 0.0),
+                Phase::Rayleigh => (1, 0.0),
+                Phase::HenyeyGreenstein { g } => (2, g),
+            };
+            *slot = MediumComponentUniform {
+                sigma_s: component.sigma_s,
+                phase,
+                g,
+                pad: [0.0; 3],
+            };
+        }
+        Self {
+            sigma_t: floats(Optics::new(medium).sigma_t),
+            count: medium.components.len() as u32,
+            components,
+        }
+    }
+}
+
+impl LightUniform {
+    /// A light as the shaders see it, and the variant of pipeline it needs. Rectangles have none.
+    pub(crate) fn new(
+        light: &frame::Light,
+        eye: DVec3,
+        glass_layers: Option<u32>,
+    ) -> (Self, LightVariant) {
+        let mut uniform = Self::default();
+        let mut variant = LightVariant::default();
+        uniform.set_emitter(&light.emitter, eye, &mut variant);
+        if let Some(projection) = &light.shadow {
+            uniform.set_shadow(&light.emitter, projection, eye, &mut variant);
+        }
+        if let Some(layers) = glass_layers {
+            uniform.glass_layers = layers;
+            variant.glass = true;
+        }
+        let mapping = light
+            .texture
+            .and_then(|placement| TextureMapping::new(&light.emitter, &placement));
+        if let Some(mapping) = mapping {
+            uniform.texture_rows = mapping.rows.map(|row| {
+                row.extend(row.dot(eye - mapping.origin))
+                    .as_vec4()
+                    .to_array()
+            });
+            variant.texture = match mapping.kind {
+                MappingKind::Affine => 1,
+                MappingKind::Projective => 2,
+                MappingKind::Sphere => 3,
+            };
+        }
+        (uniform, variant)
+    }
+
+    fn set_emitter(&mut self, emitter: &Emitter, eye: DVec3, variant: &mut LightVariant) {
+        match *emitter {
+            Emitter::Directional {
+                direction,
+                illuminance,
+            } => {
+                self.color = illuminance;
+                self.direction = floats(reals(direction).normalize_or_zero());
+            }
+            Emitter::Point {
+                position,
+                intensity,
+            } => {
+                variant.kind = 1;
+                self.color = intensity;
+                self.position = floats(reals(position) - eye);
+            }
+            Emitter::Spot {
+                position,
+                direction,
+                intensity,
+                inner,
+                outer,
+            } => {
+                variant.kind = 2;
+                self.color = intensity;
+                self.position = floats(reals(position) - eye);
+                self.direction = floats(reals(direction).normalize_or_zero());
+                self.cos_inner = inner.cos();
+                self.cos_outer = outer.cos();
+            }
+            Emitter::Rect { .. } => {}
+        }
+    }
+
+    fn set_shadow(
+        &mut self,
+        emitter: &Emitter,
+        projection: &ShadowProjection,
+        eye: DVec3,
+        variant: &mut LightVariant,
+    ) {
+        let (ShadowProjection::Single { reversed_depth, .. }
+        | ShadowProjection::Cube { reversed_depth, .. }) = *projection;
+        self.standard_depth = u32::from(!reversed_depth);
+        match *projection {
+            ShadowProjection::Single { .. } => {
+                variant.shadow = 1;
+                if let Some(faces) = shadow::faces(emitter, projection) {
+                    let relative = faces[0].clip_from_world * DMat4::from_translation(eye);
+                    self.clip_from_world = relative.as_mat4().to_cols_array_2d();
+                }
+            }
+            ShadowProjection::Cube { near, far, .. } => {
+                variant.shadow = 2;
+                let scale = f64::from(near) / (f64::from(far) - f64::from(near));
+                self.cube_depth = [(scale * f64::from(far)) as f32, -scale as f32];
+            }
+        }
+    }
+}
+
+fn floats(vector: DVec3) -> [f32; 3] {
+    vector.as_vec3().to_array()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::{offset_of, size_of};
+
+    use crate::{
+        gpu::shader::{FRAME_MODULES, LIGHT_MODULES, join},
+        techniques::ray_march,
+    };
+
+    macro_rules! layout {
+        ($type:ty: $($field:ident),+) => {
+            (size_of::<$type>(), vec![$((stringify!($field), offset_of!($type, $field))),+])
+        };
+    }
+
+    #[test]
+    fn blocks_are_laid_out_as_in_wgsl() {
+        let text = join(&[FRAME_MODULES, LIGHT_MODULES, &[ray_march::gpu::RAY_MARCH]]);
+        let module = naga::front::wgsl::parse_str(&text).expect("the joined shader parses");
+        let ours = [
+            ("Frame", layout!(FrameUniform: camera, medium)),
+            (
+                "Camera",
+                layout!(CameraUniform: right, near, up, far, forward, flags, half_extent, center, size),
+            ),
+            ("Medium", layout!(MediumUniform: sigma_t, count, components)),
+            (
+                "MediumComponent",
+                layout!(MediumComponentUniform: sigma_s, phase, g),
+            ),
+            (
+                "Light",
+                layout!(LightUniform: color, cos_inner, position, cos_outer, direction, glass_layers,
+                    texture_rows, clip_from_world, cube_depth, standard_depth),
+            ),
+            (
+                "RayMarchParams",
+                layout!(ray_march::gpu::ParamsUniform: steps, spacing),
+            ),
+        ];
+        for (name, (size, fields)) in ours {
+            let (_, found) = module
+                .types
+                .iter()
+                .find(|(_, t)| t.name.as_deref() == Some(name))
+                .unwrap_or_else(|| panic!("no struct {name}"));
+            let naga::TypeInner::Struct { members, span } = &found.inner else {
+                panic!("{name} is not a struct");
+            };
+            let wgsl: Vec<_> = members
+                .iter()
+                .map(|m| (m.name.as_deref().unwrap_or(""), m.offset as usize))
+                .collect();
+            assert_eq!(wgsl, fields, "{name}");
+            // A block may be padded to 16 bytes at its end.
+            assert_eq!(
+                size.next_multiple_of(16),
+                span.next_multiple_of(16) as usize,
+                "{name}"
+            );
+        }
+    }
+}

@@ -1,0 +1,108 @@
+// Shadow maps: what a light sees, looked up by the point it shines on; see shadow/mod.rs. Space: world, relative to the eye.
+
+const SHADOW_NONE: u32 = 0u;
+const SHADOW_SINGLE: u32 = 1u;
+const SHADOW_CUBE: u32 = 2u;
+
+// What the pipeline is made for.
+override SHADOW_KIND: u32 = 0u;
+override SHADOW_GLASS: bool = false;
+
+@group(1) @binding(1) var shadow_map: texture_depth_2d_array;
+@group(1) @binding(2) var shadow_glass: texture_2d_array<u32>;
+
+// A view ray in the map's own space, c0 + s c1: clip space (single), or relative to the light (cube).
+struct ShadowRay {
+    c0: vec4f,
+    c1: vec4f,
+}
+
+// A point on the map: the place, (0, 0) top left to (1, 1) bottom right, and the depth, 1 nearest to the light.
+struct ShadowPoint {
+    uv: vec2f,
+    face: u32,
+    depth: f32,
+}
+
+fn shadow_ray(ray: Ray) -> ShadowRay {
+    if SHADOW_KIND == SHADOW_CUBE {
+        return ShadowRay(vec4f(ray.origin - light.position, 1.0), vec4f(ray.direction, 0.0));
+    }
+    return ShadowRay(
+        light.clip_from_world * vec4f(ray.origin, 1.0),
+        light.clip_from_world * vec4f(ray.direction, 0.0),
+    );
+}
+
+fn shadow_point(p: vec4f) -> ShadowPoint {
+    if SHADOW_KIND == SHADOW_CUBE {
+        return shadow_cube_point(p.xyz);
+    }
+    // Behind the light there is no map: a place outside it.
+    let w = select(1.0, 1.0 / p.w, p.w > 0.0);
+    let uv = select(vec2f(-1.0), vec2f(0.5) + vec2f(0.5, -0.5) * p.xy * w, p.w > 0.0);
+    return ShadowPoint(uv, 0u, p.z * w);
+}
+
+// The face whose axis is nearest to the direction, in the order +X, -X, +Y, -Y, +Z, -Z, and the place on it
+// (WebGPU specification, "cube texture view").
+fn shadow_cube_point(q: vec3f) -> ShadowPoint {
+    let a = abs(q);
+    var face = 4u;
+    var axis = a.z;
+    var s = vec2f(select(q.x, -q.x, q.z < 0.0), -q.y);
+    var negative = q.z < 0.0;
+    if a.x >= a.y && a.x >= a.z {
+        face = 0u;
+        axis = a.x;
+        negative = q.x < 0.0;
+        s = vec2f(select(-q.z, q.z, negative), -q.y);
+    } else if a.y >= a.z {
+        face = 2u;
+        axis = a.y;
+        negative = q.y < 0.0;
+        s = vec2f(q.x, select(q.z, -q.z, negative));
+    }
+    let inverse = 1.0 / max(axis, 1e-20);
+    return ShadowPoint(0.5 + 0.5 * s * inverse, face + u32(negative), light.cube_depth.x * inverse + light.cube_depth.y);
+}
+
+// True iff light reaches a point at this depth past what the map holds; 0 is nothing at all.
+fn shadow_reaches(depth: f32, held: f32) -> bool {
+    let stored = select(held, 1.0 - held, light.standard_depth == 1u);
+    return stored <= 0.0 || depth >= stored;
+}
+
+// What light on its way to a point (in the map's own space) is multiplied by: 0 where it is blocked.
+fn shadow_tint(p: vec4f) -> vec3f {
+    if SHADOW_KIND == SHADOW_NONE {
+        return vec3f(1.0);
+    }
+    let place = shadow_point(p);
+    if any(place.uv < vec2f(0.0)) || any(place.uv >= vec2f(1.0)) {
+        return vec3f(1.0);
+    }
+    let texel = vec2u(place.uv * vec2f(textureDimensions(shadow_map)));
+    if !shadow_reaches(place.depth, textureLoad(shadow_map, texel, place.face, 0)) {
+        return vec3f(0.0);
+    }
+    if !SHADOW_GLASS {
+        return vec3f(1.0);
+    }
+    return shadow_glass_tint(place);
+}
+
+// The product of the tints of the glass between a point and the light. A texel of a layer: depth as the bits of an
+// f32, and three 10-bit square roots.
+fn shadow_glass_tint(place: ShadowPoint) -> vec3f {
+    let texel = vec2u(place.uv * vec2f(textureDimensions(shadow_glass)));
+    var tint = vec3f(1.0);
+    for (var layer = 0u; layer < light.glass_layers; layer++) {
+        let glass = textureLoad(shadow_glass, texel, place.face * light.glass_layers + layer, 0).xy;
+        if !shadow_reaches(place.depth, bitcast<f32>(glass.x)) {
+            let root = vec3f(vec3u(glass.y, glass.y >> 10u, glass.y >> 20u) & vec3u(1023u)) / 1023.0;
+            tint *= root * root;
+        }
+    }
+    return tint;
+}

@@ -1,0 +1,80 @@
+// Brute force: N steps a ray, each looked up in the shadow map (Chen 2011, eq. 1, as a Riemann sum).
+
+const RAY_MARCH_EQUIANGULAR: u32 = 1u;
+
+struct RayMarchParams {
+    steps: u32,
+    spacing: u32,
+}
+
+@group(2) @binding(0) var<uniform> ray_march_params: RayMarchParams;
+
+@fragment
+fn ray_march(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let ray = frame_ray(position);
+    let before = textureLoad(frame_lights_before, vec2u(position.xy), 0).rgb;
+    let left = transmittance(frame.medium.sigma_t, ray.length);
+    return vec4f(before + ray_march_light(ray), dot(left, vec3f(1.0 / 3.0)));
+}
+
+fn ray_march_light(ray: Ray) -> vec3f {
+    let span = light_reach(ray);
+    if span.x >= span.y {
+        return vec3f(0.0);
+    }
+    if light_is_local() && ray_march_params.spacing == RAY_MARCH_EQUIANGULAR {
+        return ray_march_equiangular(ray, span);
+    }
+    return ray_march_equal(ray, span);
+}
+
+fn ray_march_equal(ray: Ray, span: vec2f) -> vec3f {
+    let map_ray = shadow_ray(ray);
+    let step = (span.y - span.x) / f32(ray_march_params.steps);
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < ray_march_params.steps; i++) {
+        let s = span.x + (f32(i) + 0.5) * step;
+        sum += ray_march_sample(ray, map_ray, s);
+    }
+    return sum * step * ray_march_common(ray);
+}
+
+// Kulla & Fajardo 2012: s = t_p + h tan(xi), equal steps in xi, ds = h (1 + tan^2) d xi.
+fn ray_march_equiangular(ray: Ray, span: vec2f) -> vec3f {
+    let map_ray = shadow_ray(ray);
+    let to_light = light.position - ray.origin;
+    let projection = dot(to_light, ray.direction);
+    let height = max(length(to_light - projection * ray.direction), LIGHT_RADIUS);
+    let angles = atan((span - projection) / height);
+    let step = (angles.y - angles.x) / f32(ray_march_params.steps);
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < ray_march_params.steps; i++) {
+        let slope = tan(angles.x + (f32(i) + 0.5) * step);
+        let s = projection + height * slope;
+        sum += ray_march_sample(ray, map_ray, s) * (1.0 + slope * slope);
+    }
+    return sum * step * height * ray_march_common(ray);
+}
+
+// The factor that all samples of a ray share.
+fn ray_march_common(ray: Ray) -> vec3f {
+    if light_is_local() {
+        return vec3f(1.0);
+    }
+    return medium_scattering(-dot(light.direction, ray.direction)) * light.color;
+}
+
+// Visibility times the rest of the integrand at distance s, but for the common factor.
+fn ray_march_sample(ray: Ray, map_ray: ShadowRay, s: f32) -> vec3f {
+    let tint = shadow_tint(map_ray.c0 + s * map_ray.c1);
+    if all(tint == vec3f(0.0)) {
+        return vec3f(0.0);
+    }
+    let point = ray.origin + s * ray.direction;
+    let reached = tint * transmittance(frame.medium.sigma_t, s);
+    if !light_is_local() {
+        return reached * light_tint(point);
+    }
+    let incident = light_incident(point);
+    return reached * medium_scattering(-dot(incident.direction, ray.direction)) * incident.irradiance;
+}
