@@ -1,0 +1,178 @@
+//! Renders the shared truth shots, where present, with the `tyndall` command and holds its errors against bounds.
+//!
+//! The truths were ray traced outside this project with no shadow map, so that the error of `ray-march` is mostly its
+//! shadow map's. A shot that is missing is counted as ignored.
+
+use libtest_mimic::{Arguments, Completion, Failed, Trial};
+use std::path::Path;
+use std::process::{Command, ExitCode};
+use std::sync::Mutex;
+use tyndall_testkit::metrics::{PictureError, compare};
+use tyndall_testkit::picture::Picture;
+use tyndall_testkit::truth::{self, TruthShot};
+use tyndall_testkit::{device, skip};
+
+/// The largest relMAE a shot may have.
+struct Bounds {
+    shot: &'static str,
+    reference: f64,
+    /// Of 2048 steps; `None` where the light's kind is not for `ray-march`.
+    ray_march: Option<f64>,
+}
+
+const BOUNDS: &[Bounds] = &[
+    bounds("box-point", 0.003, Some(0.005)),
+    bounds("city-lamp", 0.003, Some(0.010)),
+    // The truth itself has 256 samples of the light.
+    bounds("donuts-rect", 0.02, None),
+    bounds("dragon-gobo", 0.003, Some(0.010)),
+    bounds("dragon-spot", 0.003, Some(0.005)),
+    bounds("hall-sun", 0.003, Some(0.010)),
+    bounds("sibenik-rose", 0.003, Some(0.030)),
+    bounds("sibenik-sun", 0.003, Some(0.025)),
+    bounds("terrain-sun", 0.003, Some(0.003)),
+];
+
+/// How far GPU and CPU may be apart with the same steps and shadow map: they differ in precision only.
+const BACKENDS_APART: f64 = 0.002;
+
+const STEPS: &str = "technique.steps=2048";
+
+const fn bounds(shot: &'static str, reference: f64, ray_march: Option<f64>) -> Bounds {
+    Bounds {
+        shot,
+        reference,
+        ray_march,
+    }
+}
+
+/// What was measured, printed once all is done.
+static ROWS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+fn main() -> ExitCode {
+    let mut arguments = Arguments::from_args();
+    // Each render uses all cores by itself.
+    arguments.test_threads = arguments.test_threads.or(Some(1));
+    let conclusion = libtest_mimic::run(&arguments, trials());
+    if let Ok(rows) = ROWS.lock() {
+        rows.iter().for_each(|row| println!("{row}"));
+    }
+    conclusion.exit_code()
+}
+
+fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for bounds in BOUNDS {
+        trials.push(Trial::ignorable_test(
+            format!("{}::reference", bounds.shot),
+            || with_shot(bounds, |shot| reference(shot, bounds.reference)),
+        ));
+        if let Some(bound) = bounds.ray_march {
+            trials.push(Trial::ignorable_test(
+                format!("{}::ray_march", bounds.shot),
+                move || with_shot(bounds, |shot| ray_march(shot, bound)),
+            ));
+        }
+    }
+    trials
+}
+
+/// Finds the shot and runs its test; ignored where the shared folder is missing, failed where only the shot is.
+fn with_shot(
+    bounds: &Bounds,
+    test: impl FnOnce(&TruthShot) -> Result<Completion, Failed>,
+) -> Result<Completion, Failed> {
+    let Some(folder) = truth::folder() else {
+        let why = "the shared truth shots are not here";
+        skip::skip(bounds.shot, why);
+        return Ok(Completion::ignored_with(why));
+    };
+    let shots = truth::shots(&folder)?;
+    let shot = shots.iter().find(|shot| shot.name == bounds.shot);
+    test(shot.ok_or_else(|| format!("no shot `{}` in {}", bounds.shot, folder.display()))?)
+}
+
+fn reference(shot: &TruthShot, bound: f64) -> Result<Completion, Failed> {
+    let picture = render(shot, &["--technique", "reference"])?;
+    check(shot, "reference", &picture, &shot.in_scatter()?, bound)?;
+    Ok(Completion::Completed)
+}
+
+fn ray_march(shot: &TruthShot, bound: f64) -> Result<Completion, Failed> {
+    let truth = shot.in_scatter()?;
+    let march = |backend| {
+        render(
+            shot,
+            &[
+                "--technique",
+                "ray-march",
+                "--set",
+                STEPS,
+                "--backend",
+                backend,
+            ],
+        )
+    };
+    let cpu = march("cpu")?;
+    check(shot, "ray-march, CPU", &cpu, &truth, bound)?;
+    match device::device() {
+        Ok(_) => {
+            let gpu = march("gpu")?;
+            check(shot, "ray-march, GPU", &gpu, &truth, bound)?;
+            check(shot, "GPU against CPU", &gpu, &cpu, BACKENDS_APART)?;
+            Ok(Completion::Completed)
+        }
+        Err(missing) if skip::in_ci() => Err(missing.into()),
+        Err(missing) => {
+            skip::skip(&format!("{} on the GPU", shot.name), &missing.to_string());
+            Ok(Completion::ignored_with("right on the CPU, no GPU"))
+        }
+    }
+}
+
+/// Renders a shot's in-scattered radiance.
+fn render(shot: &TruthShot, arguments: &[&str]) -> Result<Picture, Failed> {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path().join("in-scatter.exr");
+    let output = tyndall(&shot.shot, &out, arguments).output()?;
+    if !output.status.success() {
+        let message = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("tyndall failed ({}): {message}", output.status).into());
+    }
+    Ok(Picture::read_exr(&out)?)
+}
+
+fn tyndall(shot: &Path, out: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+    command.arg("render").arg(shot).arg("-o").arg(out);
+    command.args(["--layer", "inscatter"]).args(arguments);
+    command
+}
+
+fn check(
+    shot: &TruthShot,
+    what: &str,
+    picture: &Picture,
+    truth: &Picture,
+    bound: f64,
+) -> Result<(), Failed> {
+    let error = compare(picture, truth)?;
+    let row = row(&shot.name, what, &error, bound);
+    if let Ok(mut rows) = ROWS.lock() {
+        rows.push(row.clone());
+    }
+    if error.rel_mae <= bound {
+        Ok(())
+    } else {
+        Err(row.into())
+    }
+}
+
+fn row(shot: &str, what: &str, error: &PictureError, bound: f64) -> String {
+    let PictureError {
+        rel_mae, p99, bias, ..
+    } = error;
+    format!(
+        "{shot:<13} {what:<16} relMAE {rel_mae:.5} (at most {bound:.3})  bias {bias:+.5}  p99 {p99:.4}"
+    )
+}

@@ -1,0 +1,72 @@
+//! The checks that cargo does. All of them build in the release profile, so that each shares what another built.
+
+use crate::command::runs_quietly;
+use anyhow::{Context, bail, ensure};
+use std::process::Command;
+
+pub(crate) fn fmt() -> anyhow::Result<()> {
+    ensure_component("fmt", "rustfmt")?;
+    cargo(&["fmt", "--all", "--check"], &[])
+}
+
+pub(crate) fn clippy() -> anyhow::Result<()> {
+    ensure_component("clippy", "clippy")?;
+    let deny = ["--", "-D", "warnings"];
+    let everything = ["clippy", "--release", "--workspace", "--all-targets"];
+    cargo(&[&everything[..], &deny].concat(), &[])?;
+    for package in ["tyndall", "tyndall-scene"] {
+        let without_gpu = [
+            "clippy",
+            "--release",
+            "-p",
+            package,
+            "--no-default-features",
+        ];
+        cargo(&[&without_gpu[..], &deny].concat(), &[])?;
+    }
+    Ok(())
+}
+
+pub(crate) fn doc() -> anyhow::Result<()> {
+    cargo(
+        &["doc", "--release", "--workspace", "--no-deps"],
+        &[("RUSTDOCFLAGS", "-D warnings")],
+    )
+}
+
+pub(crate) fn unit() -> anyhow::Result<()> {
+    cargo(&["test", "--release", "--workspace"], &[])
+}
+
+pub(crate) fn truth() -> anyhow::Result<()> {
+    cargo(
+        &["test", "--release", "-p", "tyndall-cli", "--test", "truth"],
+        &[],
+    )
+}
+
+fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> anyhow::Result<()> {
+    let line = format!("cargo {}", arguments.join(" "));
+    println!("{line}");
+    // Cargo tells what it started which cargo it is.
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo)
+        .args(arguments)
+        .envs(variables.iter().copied())
+        .status()
+        .with_context(|| format!("`{line}` cannot be started"))?;
+    ensure!(status.success(), "`{line}` failed ({status})");
+    Ok(())
+}
+
+/// Adds a component that a minimal installation of Rust lacks.
+fn ensure_component(subcommand: &str, component: &str) -> anyhow::Result<()> {
+    if runs_quietly("cargo", &[subcommand, "--version"]) {
+        return Ok(());
+    }
+    println!("rustup component add {component}");
+    if runs_quietly("rustup", &["component", "add", component]) {
+        return Ok(());
+    }
+    bail!("`cargo {subcommand}` is missing, and rustup cannot add it: install {component}")
+}
