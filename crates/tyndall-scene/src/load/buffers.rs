@@ -21,6 +21,14 @@ pub(super) struct Buffers<'a> {
     loaded: Vec<OnceCell<Vec<u8>>>,
 }
 
+/// A picture's file.
+pub(super) struct Picture<'a> {
+    /// What messages call it.
+    pub(super) place: String,
+    /// The file as it is.
+    pub(super) bytes: Cow<'a, [u8]>,
+}
+
 impl<'a> Buffers<'a> {
     /// `glb_chunk` is the GLB file's BIN chunk; relative URIs are looked up in `folder`.
     pub(super) fn new(
@@ -56,24 +64,33 @@ impl<'a> Buffers<'a> {
             })
     }
 
-    /// The file of a picture: in a view, in its URI, or beside the document.
-    pub(super) fn picture(&self, index: usize) -> Result<Cow<'_, [u8]>, Refusal> {
-        let image = &self.document.as_json().images[index];
+    /// A texture's picture: in a view, in its URI, or beside the document; `None` where the texture has none.
+    pub(super) fn picture(
+        &self,
+        texture: &gltf::Texture<'_>,
+    ) -> Result<Option<Picture<'_>>, Refusal> {
+        // From the JSON, because the `gltf` crate panics where `source` or `mimeType` is missing.
+        let root = self.document.as_json();
+        let index = root.textures[texture.index()].source.value();
+        let Some(image) = root.images.get(index) else {
+            return Ok(None);
+        };
         let place = called("image", index, image.name.as_deref());
         let view = image
             .buffer_view
             .and_then(|view| self.document.views().nth(view.value()));
-        match (view, &image.uri) {
+        let bytes = match (view, &image.uri) {
             (Some(view), _) => self
                 .view(&view)
                 .map(Cow::Borrowed)
-                .map_err(|refusal| refusal.within(&place)),
+                .map_err(|refusal| refusal.within(&place))?,
             (None, Some(uri)) => self
                 .resolve(uri)
                 .map(Cow::Owned)
-                .map_err(|why| broken(place, why)),
-            (None, None) => Err(broken(place, "has neither `uri` nor `bufferView`")),
-        }
+                .map_err(|why| broken(&place, why))?,
+            (None, None) => return Err(broken(place, "has neither `uri` nor `bufferView`")),
+        };
+        Ok(Some(Picture { place, bytes }))
     }
 
     fn buffer(&self, index: usize) -> Result<&[u8], Refusal> {

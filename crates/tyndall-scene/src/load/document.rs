@@ -1,6 +1,12 @@
 //! From bytes to a document whose indices are valid.
 
-use gltf::{Document, Gltf, json};
+use gltf::{
+    Document, Gltf,
+    json::{
+        self,
+        validation::{Error, Validate},
+    },
+};
 
 use super::{Refusal, broken};
 
@@ -29,14 +35,16 @@ const GLB_HEADER: usize = 12;
 /// Most problems of a document that a message lists.
 const LISTED_PROBLEMS: usize = 5;
 
-/// Parses JSON or GLB. Every index in the result refers to something that exists.
+/// Parses JSON or GLB. Every index in the result refers to something that exists, but for the `source` of textures
+/// that only an extension gives one.
 pub(super) fn parse(bytes: &[u8]) -> Result<Gltf, Refusal> {
     check_glb_length(bytes)?;
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(refusal)?;
     let mut root = document.into_json();
     check_version(&root)?;
     check_extensions(&mut root)?;
-    let document = Document::from_json(root).map_err(refusal)?;
+    check_indices(&root)?;
+    let document = Document::from_json_without_validation(root);
     Ok(Gltf { document, blob })
 }
 
@@ -96,33 +104,55 @@ fn check_extensions(root: &mut json::Root) -> Result<(), Refusal> {
     }
 }
 
+/// The `gltf` crate's validation, without what it refuses though glTF allows it and nothing here relies on it.
+fn check_indices(root: &json::Root) -> Result<(), Refusal> {
+    let mut problems = Vec::new();
+    root.validate(root, json::Path::new, &mut |path, error| {
+        let path = path();
+        if error != Error::Missing || !may_be_missing(path.as_str()) {
+            problems.push((path, error));
+        }
+    });
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(broken("JSON", problem_list(&problems)))
+    }
+}
+
+/// Accessors without data are zeros, textures may come from an extension only, and a primitive may have no vertices.
+fn may_be_missing(path: &str) -> bool {
+    path.starts_with("accessors[") && path.ends_with("].bufferView")
+        || path.starts_with("textures[") && path.ends_with("].source")
+        || path.contains(r#".attributes["POSITION"]"#)
+}
+
 fn refusal(error: gltf::Error) -> Refusal {
     match error {
         gltf::Error::Deserialize(error) => broken("JSON", error.to_string()),
         gltf::Error::Binary(error) => broken("GLB", glb_problem(&error)),
-        gltf::Error::Validation(problems) => broken("JSON", problem_list(&problems)),
-        gltf::Error::Io(error) => broken("file", error.to_string()),
+        other => broken("file", other.to_string()),
     }
 }
 
 fn glb_problem(error: &gltf::binary::Error) -> String {
-    use gltf::binary::Error;
+    use gltf::binary::Error as Glb;
     match error {
-        Error::Version(version) => format!("version must be 2, found {version}"),
-        Error::ChunkLength {
+        Glb::Version(version) => format!("version must be 2, found {version}"),
+        Glb::ChunkLength {
             ty,
             length,
             length_read,
         } => format!("{ty:?} chunk says it has {length} bytes, found {length_read}"),
-        Error::UnknownChunkType(name) => {
+        Glb::UnknownChunkType(name) => {
             format!("unknown chunk `{}`", String::from_utf8_lossy(name))
         }
-        Error::Io(_) => "ends within a chunk's header".to_owned(),
+        Glb::Io(_) => "ends within a chunk's header".to_owned(),
         other => other.to_string(),
     }
 }
 
-fn problem_list(problems: &[(json::Path, json::validation::Error)]) -> String {
+fn problem_list(problems: &[(json::Path, Error)]) -> String {
     let mut text = problems
         .iter()
         .take(LISTED_PROBLEMS)

@@ -62,7 +62,8 @@ impl<'a> Materials<'a> {
         let base_color_texture = surface
             .base_color_texture()
             .map(|info| self.texture_index(&info.texture()))
-            .transpose()?;
+            .transpose()?
+            .flatten();
         let material = Material {
             base_color: surface.base_color_factor(),
             base_color_texture,
@@ -73,18 +74,16 @@ impl<'a> Materials<'a> {
         Ok(material)
     }
 
-    fn texture_index(&mut self, source: &gltf::Texture<'_>) -> Result<usize, Refusal> {
+    /// `None` for textures whose picture only an extension knows.
+    fn texture_index(&mut self, source: &gltf::Texture<'_>) -> Result<Option<usize>, Refusal> {
         if let Some(&index) = self.texture_indices.get(&source.index()) {
-            return Ok(index);
+            return Ok(Some(index));
         }
-        let image = source.source();
-        let bytes = self.buffers.picture(image.index())?;
-        let (size, texels) = decode(&bytes).map_err(|error| {
-            broken(
-                called("image", image.index(), image.name()),
-                format!("cannot be decoded: {error}"),
-            )
-        })?;
+        let Some(picture) = self.buffers.picture(source)? else {
+            return Ok(None);
+        };
+        let (size, texels) = decode(&picture.bytes)
+            .map_err(|error| broken(picture.place, format!("cannot be decoded: {error}")))?;
         let sampler = source.sampler();
         self.textures.push(Texture {
             size,
@@ -93,7 +92,7 @@ impl<'a> Materials<'a> {
         });
         let index = self.textures.len() - 1;
         self.texture_indices.insert(source.index(), index);
-        Ok(index)
+        Ok(Some(index))
     }
 }
 

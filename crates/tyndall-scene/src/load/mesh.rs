@@ -68,7 +68,7 @@ impl<'a> Meshes<'a> {
         (self.meshes, materials, textures)
     }
 
-    /// `None` for points, lines, and what has too few vertices for a triangle.
+    /// `None` for points, lines, and what has too few vertices for a triangle, or none.
     fn read_primitive(
         &mut self,
         source: &gltf::Primitive<'_>,
@@ -76,9 +76,10 @@ impl<'a> Meshes<'a> {
         let Some(topology) = Topology::of(source.mode()) else {
             return Ok(None);
         };
-        let positions: Vec<Vec3> = self
-            .read_attribute(source, &Semantic::Positions, None)?
-            .ok_or_else(|| broken("POSITION", "is missing"))?;
+        let Some(positions) = self.read_attribute::<3, Vec3>(source, &Semantic::Positions, None)?
+        else {
+            return Ok(None);
+        };
         let count = positions.len();
         let indices = topology.triangles(&self.read_corners(source, count)?);
         if indices.is_empty() {

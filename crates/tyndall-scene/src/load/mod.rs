@@ -7,7 +7,8 @@
 //!
 //! What is not: points and lines are skipped; vertex colours, emissive textures and the `range` of lights are
 //! ignored; skins and morph targets stay in their rest pose, placed by the node that holds the mesh. A file that
-//! *requires* another extension is refused.
+//! *requires* another extension is refused, and so are animations that move something else than a node's transform
+//! (`KHR_animation_pointer`) and scenes without a list of nodes, which the `gltf` crate does not parse.
 //!
 //! Whatever a used mesh, material or picture gets wrong is a [`LoadError`]; what the scene does not use is not read.
 
