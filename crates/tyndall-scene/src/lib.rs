@@ -1,3 +1,4 @@
 //! Scenes for `tyndall`.
 
+pub mod load;
 pub mod scene;
