@@ -1,3 +1,5 @@
 //! Scenes for `tyndall`.
 
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod scene;
