@@ -1,4 +1,6 @@
 //! Scenes for `tyndall`.
 
 pub mod load;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod scene;

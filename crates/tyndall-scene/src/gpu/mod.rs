@@ -1,0 +1,28 @@
+//! The scene on the GPU: what an engine gives [`tyndall::Effect`] besides the frame.
+//!
+//! A [`SceneRenderer`] holds the uploaded scene and every pipeline; its methods only record passes on the caller's
+//! encoder: a G-buffer, shadow maps, layers of coloured glass, and lit surfaces. It has a twin on the CPU
+//! ([`crate::trace`], [`crate::shading`]), whose results it equals but for rasterisation and rounding.
+//!
+//! Whoever has no device yet gets one from [`connect`]; whoever wants numbers back reads them with [`readback`].
+
+mod device;
+mod error;
+mod g_buffer;
+mod glass;
+mod material;
+mod mesh;
+mod pipeline;
+pub mod readback;
+mod renderer;
+mod shaders;
+mod shadow_map;
+mod targets;
+mod texture;
+mod view;
+
+pub use device::{NoAdapter, connect};
+pub use error::GpuSceneError;
+pub use renderer::SceneRenderer;
+pub use targets::{GBufferTargets, GlassMapTarget, ShadowMapTarget};
+pub use texture::upload_light_texture;

@@ -1,0 +1,96 @@
+//! Shadow maps: the depth of the first opaque surface seen from a light.
+//!
+//! The rasteriser adds no bias: volumes need none, and surfaces get theirs where they are lit.
+
+use tyndall::{
+    frame::{Emitter, ShadowProjection},
+    gpu::PassTimer,
+};
+use wgpu::{CommandEncoder, Device, RenderPipeline};
+
+use super::{
+    material::Materials,
+    mesh::{DrawClass, Meshes},
+    pipeline::{ByDepth, Layouts, MeshPipeline, cleared_depth},
+    shaders,
+    targets::ShadowMapTarget,
+    view::ViewUniform,
+};
+
+pub(super) struct ShadowMapPipelines {
+    opaque: ByDepth<RenderPipeline>,
+    masked: ByDepth<RenderPipeline>,
+}
+
+impl ShadowMapPipelines {
+    pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
+        let module = shaders::SHADOW_MAP.module(device);
+        let opaque = Layouts::pipeline(device, &[&layouts.view]);
+        let masked = Layouts::pipeline(device, &[&layouts.view, &layouts.material]);
+        let pipeline = |label, layout, fragment| {
+            ByDepth::new(|reversed_depth| {
+                MeshPipeline {
+                    label,
+                    layout,
+                    module: &module,
+                    fragment,
+                    constants: &[],
+                    targets: &[],
+                    reversed_depth,
+                    writes_depth: true,
+                }
+                .create(device)
+            })
+        };
+        Self {
+            opaque: pipeline("shadow map opaque", &opaque, None),
+            masked: pipeline(
+                "shadow map masked",
+                &masked,
+                Some("shadow_map_masked_fragment"),
+            ),
+        }
+    }
+
+    pub(super) fn record(
+        &self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        layouts: &Layouts,
+        (meshes, materials): (&Meshes, &Materials),
+        target: &ShadowMapTarget,
+        (emitter, projection): (&Emitter, &ShadowProjection),
+        mut timer: Option<&mut PassTimer>,
+    ) {
+        let reversed = reversed_depth(projection);
+        let views = ViewUniform::of_light(emitter, projection);
+        assert_eq!(
+            views.len(),
+            target.faces.len(),
+            "a shadow map's target must have the faces of its projection"
+        );
+        for (view, face) in views.iter().zip(&target.faces) {
+            let view = layouts.view_bind_group(device, view);
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("shadow map"),
+                depth_stencil_attachment: Some(cleared_depth(face, reversed, wgpu::StoreOp::Store)),
+                timestamp_writes: timer
+                    .as_deref_mut()
+                    .and_then(|t| t.render_pass("shadow map")),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &view, &[]);
+            pass.set_pipeline(self.opaque.get(reversed));
+            meshes.draw(&mut pass, DrawClass::Opaque, None);
+            pass.set_pipeline(self.masked.get(reversed));
+            meshes.draw(&mut pass, DrawClass::Masked, Some(materials));
+        }
+    }
+}
+
+pub(super) fn reversed_depth(projection: &ShadowProjection) -> bool {
+    match *projection {
+        ShadowProjection::Single { reversed_depth, .. }
+        | ShadowProjection::Cube { reversed_depth, .. } => reversed_depth,
+    }
+}

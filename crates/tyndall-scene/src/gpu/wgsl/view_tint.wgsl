@@ -1,0 +1,6 @@
+// What glass and blended surfaces in front of the first opaque surface multiply its light by.
+
+@fragment
+fn view_tint_fragment(fragment: MeshFragment) -> @location(0) vec4f {
+    return vec4f(material_tint(material_base_color(fragment.uv)), 1.0);
+}
