@@ -1,0 +1,3 @@
+//! What the `tyndall` command is made of.
+
+pub mod shot;
