@@ -50,7 +50,9 @@ pub(super) fn read_animation(field: &Field<'_>) -> Result<Animation, ShotError> 
     let section = field.section()?;
     section.only(&["fps", "move"])?;
     let expected = "a number > 0";
-    let fps = section.require("fps", expected)?.real(expected, |x| x > 0.0)?;
+    let fps = section
+        .require("fps", expected)?
+        .real(expected, |x| x > 0.0)?;
     let moves = match section.get("move") {
         None => Vec::new(),
         Some(list) => list

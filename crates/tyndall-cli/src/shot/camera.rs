@@ -176,11 +176,7 @@ impl CameraSpec {
         }
     }
 
-    fn change_projection(
-        &self,
-        projection: &mut Projection,
-        aspect: f32,
-    ) -> Result<(), ShotError> {
+    fn change_projection(&self, projection: &mut Projection, aspect: f32) -> Result<(), ShotError> {
         match projection {
             Projection::Perspective {
                 half_extent,
@@ -263,11 +259,7 @@ fn find(cameras: &[(String, Camera)], name: &str) -> Result<Camera, Problem> {
         })
 }
 
-fn point(
-    section: &Section<'_>,
-    key: &str,
-    required: bool,
-) -> Result<Option<[f32; 3]>, ShotError> {
+fn point(section: &Section<'_>, key: &str, required: bool) -> Result<Option<[f32; 3]>, ShotError> {
     if required || section.get(key).is_some() {
         section.point(key).map(Some)
     } else {

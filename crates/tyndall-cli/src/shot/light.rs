@@ -157,11 +157,7 @@ fn is_parallel(a: [f32; 3], b: [f32; 3]) -> bool {
     normal.length() <= LEAST_SINE
 }
 
-fn texture(
-    field: &Field<'_>,
-    emitter: &Emitter,
-    folder: &Path,
-) -> Result<TextureSpec, ShotError> {
+fn texture(field: &Field<'_>, emitter: &Emitter, folder: &Path) -> Result<TextureSpec, ShotError> {
     let section = field.section()?;
     let placement = match emitter {
         Emitter::Directional { direction, .. } => parallelogram(&section, *direction)?,
@@ -186,10 +182,7 @@ fn texture(
 
 const PICTURE: &str = "the path of a .png, .jpg or .exr picture";
 
-fn parallelogram(
-    section: &Section<'_>,
-    light: [f32; 3],
-) -> Result<TexturePlacement, ShotError> {
+fn parallelogram(section: &Section<'_>, light: [f32; 3]) -> Result<TexturePlacement, ShotError> {
     section.only(&["file", "center", "edge_x", "edge_y"])?;
     let (edge_x, edge_y) = edges(section)?;
     let normal = Vec3::from(edge_x)

@@ -45,7 +45,8 @@ pub(super) fn read(field: Option<&Field<'_>>, root: &Section<'_>) -> Result<Tech
     let name = section.as_ref().and_then(|section| section.get("name"));
     let mut technique = match &name {
         Some(field) => named(field)?,
-        None => Technique::from_name(DEFAULT).ok_or_else(|| root.error(Problem::unknown_name("technique", DEFAULT, &names())))?,
+        None => Technique::from_name(DEFAULT)
+            .ok_or_else(|| root.error(Problem::unknown_name("technique", DEFAULT, &names())))?,
     };
     let parameters = section.iter().flat_map(Section::fields);
     for (key, field) in parameters.filter(|(key, _)| *key != "name") {
@@ -68,7 +69,11 @@ fn set(technique: &mut Technique, key: &str, field: &Field<'_>) -> Result<(), Sh
         Value::Bool(yes) => techniques::Value::Bool(*yes),
         _ => return Err(field.unexpected("a finite number, a word, true or false")),
     };
-    let keys: Vec<&str> = technique.params().iter().map(|(info, _)| info.key).collect();
+    let keys: Vec<&str> = technique
+        .params()
+        .iter()
+        .map(|(info, _)| info.key)
+        .collect();
     technique.set(key, &value).map_err(|error| match error {
         ParamError::Unknown { .. } => field.error(Problem::UnknownKey {
             expected: one_of(&keys),
