@@ -1,0 +1,97 @@
+//! From scene-referred radiance to the bytes of a picture: exposure, tone mapping, sRGB, dithering.
+
+mod dither;
+mod exposure;
+mod tone;
+
+pub use exposure::automatic_exposure;
+pub use tone::pbr_neutral;
+
+use dither::quantize;
+
+/// Linear RGB, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height [pixels].
+    pub size: [u32; 2],
+    /// One a pixel.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+/// Exposes by `ev` (a pixel is multiplied by 2^ev), maps the tones into the display's range and encodes as 8-bit sRGB.
+pub fn develop(picture: &Picture, ev: f32) -> Vec<[u8; 3]> {
+    let scale = ev.exp2();
+    encode_with(picture, |pixel| pbr_neutral(pixel.map(|x| x * scale)))
+}
+
+/// Encodes values that are in the display's range already, such as transmittance.
+pub fn encode(picture: &Picture) -> Vec<[u8; 3]> {
+    encode_with(picture, |pixel| pixel)
+}
+
+fn encode_with(picture: &Picture, map: impl Fn([f32; 3]) -> [f32; 3]) -> Vec<[u8; 3]> {
+    let width = picture.size[0] as usize;
+    picture
+        .pixels
+        .iter()
+        .enumerate()
+        .map(|(index, pixel)| {
+            let position = [(index % width) as u32, (index / width) as u32];
+            map(*pixel).map(|linear| quantize(srgb_from_linear(linear), position))
+        })
+        .collect()
+}
+
+/// IEC 61966-2-1; what is below 0, above 1 or not a number is clamped.
+fn srgb_from_linear(linear: f32) -> f32 {
+    let linear = linear.clamp(0.0, 1.0).max(0.0);
+    if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// The inverse of the sRGB encoding, for 8-bit pictures that are read.
+pub(crate) fn linear_from_srgb(encoded: u8) -> f32 {
+    let encoded = f32::from(encoded) / 255.0;
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// Rec. 709 luminance.
+fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_survives_decoding_and_encoding() {
+        for code in 0..=255 {
+            let encoded = 255.0 * srgb_from_linear(linear_from_srgb(code));
+            // Measured: 3.1e-5 codes.
+            assert!(
+                (encoded - f32::from(code)).abs() < 1e-4,
+                "{code}: {encoded}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_no_light_is_black_and_what_is_too_much_is_white() {
+        let picture = Picture {
+            size: [4, 1],
+            pixels: [f32::NAN, -1.0, 0.0, f32::INFINITY]
+                .map(|x| [x; 3])
+                .to_vec(),
+        };
+        assert_eq!(encode(&picture), [[0; 3], [0; 3], [0; 3], [255; 3]]);
+        assert_eq!(develop(&picture, 0.0), [[0; 3], [0; 3], [0; 3], [255; 3]]);
+    }
+}

@@ -1,0 +1,282 @@
+//! `[[light]]`: what shines, the size of its shadow map, and the picture it shines through.
+
+use std::{
+    f32::consts::FRAC_PI_2,
+    path::{Path, PathBuf},
+};
+
+use glam::Vec3;
+use tyndall::frame::{Emitter, TexturePlacement};
+
+use super::{
+    error::{Location, Problem, ShotError},
+    reader::{Field, Section},
+    tree::{Entry, Value},
+};
+
+/// A light of a shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightSpec {
+    /// What shines.
+    pub emitter: Emitter,
+    /// Texels of a side of its shadow map, or of a face of its cube map.
+    pub shadow_map: u32,
+    /// The picture it shines through.
+    pub texture: Option<TextureSpec>,
+}
+
+/// The picture a light shines through.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureSpec {
+    /// The picture file.
+    pub file: PathBuf,
+    /// Where the shot names it.
+    pub location: Location,
+    /// Where it lies.
+    pub placement: TexturePlacement,
+}
+
+/// Texels of a side of a shadow map that a shot leaves to us: directional and spot lights.
+const DEFAULT_MAP: u32 = 2048;
+/// The same for a face of a point light's cube and for each sample of a rectangular light.
+const DEFAULT_FACE: u32 = 1024;
+const DEFAULT_RECT: u32 = 128;
+/// The most texels a shadow map's side may have.
+const MAX_MAP: u32 = 16_384;
+const MAX_SAMPLES: u32 = 1024;
+const DEFAULT_SAMPLES: u32 = 256;
+
+const KINDS: [&str; 4] = ["directional", "point", "spot", "rect"];
+const COMMON: [&str; 3] = ["type", "shadow_map", "texture"];
+/// Sine of the smallest angle between a texture's `up` and the axis it turns about, or between a parallelogram's edges.
+const LEAST_SINE: f32 = 1e-4;
+
+/// Reads every `[[light]]`; picture files are relative to `folder`.
+pub(super) fn read_all(field: &Field<'_>, folder: &Path) -> Result<Vec<LightSpec>, ShotError> {
+    field
+        .list("a list of tables: [[light]]")?
+        .iter()
+        .map(|light| read(light, folder))
+        .collect()
+}
+
+fn read(field: &Field<'_>, folder: &Path) -> Result<LightSpec, ShotError> {
+    let section = field.section()?;
+    let expected = super::error::one_of(&KINDS);
+    let kind = section.require("type", &expected)?;
+    let (emitter, default_map) = match kind.text(&expected)? {
+        "directional" => (directional(&section)?, DEFAULT_MAP),
+        "point" => (point(&section)?, DEFAULT_FACE),
+        "spot" => (spot(&section)?, DEFAULT_MAP),
+        "rect" => (rect(&section)?, DEFAULT_RECT),
+        other => {
+            return Err(kind.error(Problem::unknown_name("type of light", other, &KINDS)));
+        }
+    };
+    Ok(LightSpec {
+        emitter,
+        shadow_map: section.whole_or("shadow_map", default_map, 1..=MAX_MAP)?,
+        texture: section
+            .get("texture")
+            .map(|field| texture(&field, &emitter, folder))
+            .transpose()?,
+    })
+}
+
+/// Refuses keys that are neither common to all lights nor in `own`.
+fn only(section: &Section<'_>, own: &[&str]) -> Result<(), ShotError> {
+    let known: Vec<&str> = COMMON.iter().chain(own).copied().collect();
+    section.only(&known)
+}
+
+fn directional(section: &Section<'_>) -> Result<Emitter, ShotError> {
+    only(section, &["direction", "illuminance"])?;
+    Ok(Emitter::Directional {
+        direction: section.direction("direction")?,
+        illuminance: section.color("illuminance")?,
+    })
+}
+
+fn point(section: &Section<'_>) -> Result<Emitter, ShotError> {
+    only(section, &["position", "intensity"])?;
+    Ok(Emitter::Point {
+        position: section.point("position")?,
+        intensity: section.color("intensity")?,
+    })
+}
+
+fn spot(section: &Section<'_>) -> Result<Emitter, ShotError> {
+    only(
+        section,
+        &["position", "direction", "intensity", "inner", "outer"],
+    )?;
+    let expected = "an angle above 0 and below pi/2 radians";
+    let outer = section
+        .require("outer", expected)?
+        .real(expected, |x| x > 0.0 && x < FRAC_PI_2)?;
+    let expected = format!("an angle from 0 to below outer = {outer} radians");
+    let inner = section
+        .require("inner", &expected)?
+        .real(&expected, |x| x >= 0.0 && x < outer)?;
+    Ok(Emitter::Spot {
+        position: section.point("position")?,
+        direction: section.direction("direction")?,
+        intensity: section.color("intensity")?,
+        inner,
+        outer,
+    })
+}
+
+fn rect(section: &Section<'_>) -> Result<Emitter, ShotError> {
+    only(section, &["center", "edge_x", "edge_y", "radiance", "vpls"])?;
+    let (edge_x, edge_y) = edges(section)?;
+    Ok(Emitter::Rect {
+        center: section.point("center")?,
+        edge_x,
+        edge_y,
+        radiance: section.color("radiance")?,
+        samples: section.whole_or("vpls", DEFAULT_SAMPLES, 1..=MAX_SAMPLES)?,
+    })
+}
+
+/// The edges of a parallelogram that has an area.
+fn edges(section: &Section<'_>) -> Result<([f32; 3], [f32; 3]), ShotError> {
+    let edge_x = section.direction("edge_x")?;
+    let edge_y = section.direction("edge_y")?;
+    if is_parallel(edge_x, edge_y) {
+        let field = section.require("edge_y", "")?;
+        return Err(field.unexpected("an edge that is not parallel to edge_x"));
+    }
+    Ok((edge_x, edge_y))
+}
+
+fn is_parallel(a: [f32; 3], b: [f32; 3]) -> bool {
+    let normal = Vec3::from(a)
+        .normalize_or_zero()
+        .cross(Vec3::from(b).normalize_or_zero());
+    normal.length() <= LEAST_SINE
+}
+
+fn texture(field: &Field<'_>, emitter: &Emitter, folder: &Path) -> Result<TextureSpec, ShotError> {
+    let section = field.section()?;
+    let placement = match emitter {
+        Emitter::Directional { direction, .. } => parallelogram(&section, *direction)?,
+        Emitter::Spot { direction, .. } => {
+            section.only(&["file", "up"])?;
+            let up = turned_about(&section, "up", *direction, "the spot's direction")?;
+            TexturePlacement::Cone { up }
+        }
+        Emitter::Point { .. } => sphere(&section)?,
+        Emitter::Rect { .. } => {
+            section.only(&["file"])?;
+            TexturePlacement::Rectangle
+        }
+    };
+    let file = section.require("file", PICTURE)?;
+    Ok(TextureSpec {
+        file: folder.join(file.text(PICTURE)?),
+        location: file.location(),
+        placement,
+    })
+}
+
+const PICTURE: &str = "the path of a .png, .jpg or .exr picture";
+
+fn parallelogram(section: &Section<'_>, light: [f32; 3]) -> Result<TexturePlacement, ShotError> {
+    section.only(&["file", "center", "edge_x", "edge_y"])?;
+    let (edge_x, edge_y) = edges(section)?;
+    let normal = Vec3::from(edge_x)
+        .normalize_or_zero()
+        .cross(Vec3::from(edge_y).normalize_or_zero())
+        .normalize_or_zero();
+    if normal.dot(Vec3::from(light).normalize_or_zero()).abs() <= LEAST_SINE {
+        let field = section.require("edge_y", "")?;
+        return Err(field.unexpected("a parallelogram that the light doesn't graze"));
+    }
+    Ok(TexturePlacement::Parallelogram {
+        center: section.point("center")?,
+        edge_x,
+        edge_y,
+    })
+}
+
+fn sphere(section: &Section<'_>) -> Result<TexturePlacement, ShotError> {
+    section.only(&["file", "up", "forward"])?;
+    let up = section.direction("up")?;
+    let forward = turned_about(section, "forward", up, "light.texture.up")?;
+    Ok(TexturePlacement::Sphere { up, forward })
+}
+
+/// A direction that is not parallel to `axis`.
+fn turned_about(
+    section: &Section<'_>,
+    key: &str,
+    axis: [f32; 3],
+    axis_name: &str,
+) -> Result<[f32; 3], ShotError> {
+    let direction = section.direction(key)?;
+    if is_parallel(direction, axis) {
+        let field = section.require(key, "")?;
+        return Err(field.unexpected(format!("a direction that is not parallel to {axis_name}")));
+    }
+    Ok(direction)
+}
+
+/// Lights of a scene as a shot would write them, for `--set` to change.
+pub(super) fn to_tree(emitters: &[Emitter]) -> Entry {
+    Entry::of_scene(Value::List(
+        emitters
+            .iter()
+            .map(|emitter| Entry::of_scene(emitter_value(emitter)))
+            .collect(),
+    ))
+}
+
+fn emitter_value(emitter: &Emitter) -> Value {
+    match *emitter {
+        Emitter::Directional {
+            direction,
+            illuminance,
+        } => Value::scene_table([
+            ("type", "directional".into()),
+            ("direction", direction.into()),
+            ("illuminance", illuminance.into()),
+        ]),
+        Emitter::Point {
+            position,
+            intensity,
+        } => Value::scene_table([
+            ("type", "point".into()),
+            ("position", position.into()),
+            ("intensity", intensity.into()),
+        ]),
+        Emitter::Spot {
+            position,
+            direction,
+            intensity,
+            inner,
+            outer,
+        } => Value::scene_table([
+            ("type", "spot".into()),
+            ("position", position.into()),
+            ("direction", direction.into()),
+            ("intensity", intensity.into()),
+            ("inner", inner.into()),
+            ("outer", outer.into()),
+        ]),
+        Emitter::Rect {
+            center,
+            edge_x,
+            edge_y,
+            radiance,
+            samples,
+        } => Value::scene_table([
+            ("type", "rect".into()),
+            ("center", center.into()),
+            ("edge_x", edge_x.into()),
+            ("edge_y", edge_y.into()),
+            ("radiance", radiance.into()),
+            ("vpls", Value::Integer(samples.into())),
+        ]),
+    }
+}

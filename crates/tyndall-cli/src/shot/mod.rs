@@ -1,0 +1,281 @@
+//! Shots: scene, camera, lights, medium and technique of one picture, read from a TOML file, a scene file and `--set`.
+
+mod animation;
+mod camera;
+mod error;
+mod light;
+mod medium;
+mod overrides;
+mod reader;
+mod technique;
+mod tree;
+
+#[cfg(test)]
+mod tests;
+
+use std::{
+    ffi::OsStr,
+    path::{Path, PathBuf},
+};
+
+use tyndall::{
+    frame::{Emitter, Medium},
+    techniques::Technique,
+};
+
+pub use animation::{Animation, Move, Temporal};
+pub(crate) use camera::SceneCameras;
+pub use camera::{CameraBase, CameraSpec};
+pub use error::{Location, Origin, Problem, ShotError};
+pub use light::{LightSpec, TextureSpec};
+pub use overrides::{Override, OverrideError};
+pub(crate) use technique::names as technique_names;
+
+use reader::Section;
+use tree::{Entry, Place, Table};
+
+/// Everything one picture needs, checked as far as it can be without the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shot {
+    /// The shot or scene file, as it was given.
+    pub file: PathBuf,
+    /// What the picture is of.
+    pub scene: SceneSource,
+    /// Width and height [pixels].
+    pub size: [u32; 2],
+    /// Where the picture is taken from.
+    pub camera: CameraSpec,
+    /// The lights; `None`: the scene's, or a default sun.
+    pub lights: Option<Vec<LightSpec>>,
+    /// The medium; `None`: one that suits the scene's size.
+    pub medium: Option<Medium>,
+    /// How the integral is computed.
+    pub technique: Technique,
+    /// Reuse of earlier frames, in sequences.
+    pub temporal: Option<Temporal>,
+    /// What moves, in sequences.
+    pub animation: Option<Animation>,
+    /// Changes to lights and media that only the scene knows.
+    deferred: Vec<Override>,
+}
+
+/// Where a scene comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SceneSource {
+    /// A glTF 2.0 file (`.gltf` or `.glb`).
+    File(PathBuf),
+    /// A built-in scene, by its name without `builtin:`.
+    Builtin(String),
+}
+
+/// Size of a picture whose shot doesn't say [pixels].
+const DEFAULT_SIZE: [u32; 2] = [960, 540];
+/// The longest side of a picture [pixels].
+const MAX_SIDE: u32 = 16_384;
+/// The most pixels of a picture: an `Rgba32Float` texture of 1 GiB.
+const MAX_PIXELS: u64 = 1 << 26;
+
+const KEYS: [&str; 8] = [
+    "scene",
+    "size",
+    "camera",
+    "light",
+    "medium",
+    "technique",
+    "temporal",
+    "animation",
+];
+
+impl SceneSource {
+    fn new(text: &str, folder: &Path) -> Self {
+        match text.strip_prefix("builtin:") {
+            Some(name) => Self::Builtin(name.to_owned()),
+            None => Self::File(folder.join(text)),
+        }
+    }
+
+    /// What pictures of it are called by default.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Builtin(name) => name.clone(),
+            Self::File(path) => stem(path),
+        }
+    }
+}
+
+impl std::fmt::Display for SceneSource {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Builtin(name) => write!(f, "builtin:{name}"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}
+
+impl Shot {
+    /// Reads a shot file (`.toml`), or makes a shot of a scene (`.gltf`, `.glb`, `builtin:NAME`).
+    /// `technique` takes the place of the shot's; `overrides` are applied last, in order.
+    ///
+    /// # Errors
+    /// [`ShotError`] where the file can't be read, is not TOML, or holds a key or value that doesn't belong.
+    pub fn load(
+        file: &Path,
+        technique: Option<&str>,
+        overrides: &[Override],
+    ) -> Result<Self, ShotError> {
+        let mut root = if file.extension() == Some(OsStr::new("toml")) {
+            read_file(file)?
+        } else {
+            of_scene(file)
+        };
+        let in_file = |key: &str| root.contains_key(key);
+        let (camera_in_file, lights_in_file, medium_in_file) =
+            (in_file("camera"), in_file("light"), in_file("medium"));
+        if let Some(name) = technique {
+            technique::replace(&mut root, name);
+        }
+        let (deferred, immediate): (Vec<_>, Vec<_>) =
+            overrides.iter().cloned().partition(|change| {
+                (!lights_in_file && change.is_within("light"))
+                    || (!medium_in_file && change.is_within("medium"))
+            });
+        for change in &immediate {
+            change.apply(file, &mut root)?;
+        }
+        Self::read(file, &root, camera_in_file, deferred)
+    }
+
+    fn read(
+        file: &Path,
+        root: &Table,
+        camera_in_file: bool,
+        deferred: Vec<Override>,
+    ) -> Result<Self, ShotError> {
+        let section = Section::root(file, root);
+        section.only(&KEYS)?;
+        let folder = folder(file);
+        let scene = "a path or builtin:NAME";
+        let technique = section.get("technique");
+        Ok(Self {
+            file: file.to_owned(),
+            scene: SceneSource::new(section.require("scene", scene)?.text(scene)?, folder),
+            size: size(&section)?,
+            camera: match section.get("camera") {
+                Some(field) => CameraSpec::read(&field, camera_in_file)?,
+                None => CameraSpec::of_scene(Location {
+                    file: file.to_owned(),
+                    origin: Origin::File,
+                    path: "camera".to_owned(),
+                }),
+            },
+            lights: section
+                .get("light")
+                .map(|field| light::read_all(&field, folder))
+                .transpose()?,
+            medium: section
+                .get("medium")
+                .map(|field| medium::read(&field))
+                .transpose()?,
+            technique: technique::read(technique.as_ref(), &section)?,
+            temporal: section
+                .get("temporal")
+                .map(|field| animation::read_temporal(&field))
+                .transpose()?,
+            animation: section
+                .get("animation")
+                .map(|field| animation::read_animation(&field))
+                .transpose()?,
+            deferred,
+        })
+    }
+
+    /// What pictures of this shot are called by default: the shot's or the scene's name.
+    pub fn name(&self) -> String {
+        if self.file.extension() == Some(OsStr::new("toml")) {
+            stem(&self.file)
+        } else {
+            self.scene.name()
+        }
+    }
+
+    /// The lights of a shot that leaves them to the scene, with the changes of `--set`.
+    pub(crate) fn scene_lights(&self, emitters: &[Emitter]) -> Result<Vec<LightSpec>, ShotError> {
+        let root = self.changed("light", light::to_tree(emitters))?;
+        let field = Section::root(&self.file, &root).require("light", "lights")?;
+        light::read_all(&field, folder(&self.file))
+    }
+
+    /// The medium of a shot that leaves it to the scene, with the changes of `--set`.
+    pub(crate) fn scene_medium(&self, medium: &Medium) -> Result<Medium, ShotError> {
+        let root = self.changed("medium", medium::to_tree(medium))?;
+        medium::read(&Section::root(&self.file, &root).require("medium", "a medium")?)
+    }
+
+    fn changed(&self, section: &str, entry: Entry) -> Result<Table, ShotError> {
+        let mut root = Table::from([(section.to_owned(), entry)]);
+        for change in self.deferred.iter().filter(|c| c.is_within(section)) {
+            change.apply(&self.file, &mut root)?;
+        }
+        Ok(root)
+    }
+}
+
+fn folder(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
+}
+
+fn read_file(file: &Path) -> Result<Table, ShotError> {
+    let error = |origin, problem| ShotError {
+        location: Location {
+            file: file.to_owned(),
+            origin,
+            path: String::new(),
+        },
+        problem,
+    };
+    let source = std::fs::read_to_string(file)
+        .map_err(|cause| error(Origin::File, Problem::Unreadable(cause.to_string())))?;
+    tree::parse(&source).map_err(|(line, cause)| {
+        let message = cause.message().trim().replace('\n', ", ");
+        error(Origin::Line(line), Problem::Syntax(message))
+    })
+}
+
+/// A shot of a scene file: its path, relative to its own folder, and a size.
+fn of_scene(file: &Path) -> Table {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    let [width, height] = DEFAULT_SIZE.map(|side| tree::Value::Integer(side.into()));
+    [
+        ("scene", tree::Value::Text(name.to_string_lossy().into())),
+        (
+            "size",
+            tree::Value::List(vec![Entry::of_scene(width), Entry::of_scene(height)]),
+        ),
+    ]
+    .into_iter()
+    .map(|(key, value)| {
+        let place = Place::Scene;
+        (key.to_owned(), Entry { value, place })
+    })
+    .collect()
+}
+
+fn size(section: &Section<'_>) -> Result<[u32; 2], ShotError> {
+    let expected = format!("two whole numbers from 1 to {MAX_SIDE}, width and height");
+    let field = section.require("size", &expected)?;
+    let mut size = [0; 2];
+    for (side, item) in size.iter_mut().zip(field.array::<2>(&expected)?) {
+        *side = item
+            .whole(1..=MAX_SIDE)
+            .map_err(|_| field.unexpected(expected.as_str()))?;
+    }
+    if u64::from(size[0]) * u64::from(size[1]) > MAX_PIXELS {
+        return Err(field.unexpected(format!("at most {MAX_PIXELS} pixels in all")));
+    }
+    Ok(size)
+}

@@ -1,0 +1,84 @@
+//! `[technique]`: how the integral is computed.
+
+use tyndall::techniques::{self, ParamError, TABLE, Technique};
+
+use super::{
+    error::{Problem, ShotError, one_of, similar},
+    reader::{Field, Section},
+    tree::{Entry, Place, Table, Value},
+};
+
+/// What a shot that names none is rendered with.
+pub(super) const DEFAULT: &str = "ray-march";
+
+/// Every technique's name.
+pub(crate) fn names() -> Vec<&'static str> {
+    TABLE.iter().map(|info| info.name).collect()
+}
+
+/// Puts the technique of `--technique` in the shot's place; the shot's parameters stay where it names the same one.
+pub(super) fn replace(root: &mut Table, name: &str) {
+    let same = match root.get("technique").map(|entry| &entry.value) {
+        Some(Value::Table(table)) => match table.get("name").map(|entry| &entry.value) {
+            Some(Value::Text(old)) => old == name,
+            _ => name == DEFAULT,
+        },
+        _ => false,
+    };
+    if same {
+        return;
+    }
+    let name = Entry {
+        value: Value::Text(name.to_owned()),
+        place: Place::Override,
+    };
+    let table = Entry {
+        value: Value::Table(Table::from([("name".to_owned(), name)])),
+        place: Place::Override,
+    };
+    root.insert("technique".to_owned(), table);
+}
+
+/// Reads `[technique]`; the default technique where there is none.
+pub(super) fn read(field: Option<&Field<'_>>, root: &Section<'_>) -> Result<Technique, ShotError> {
+    let section = field.map(Field::section).transpose()?;
+    let name = section.as_ref().and_then(|section| section.get("name"));
+    let mut technique = match &name {
+        Some(field) => named(field)?,
+        None => Technique::from_name(DEFAULT)
+            .ok_or_else(|| root.error(Problem::unknown_name("technique", DEFAULT, &names())))?,
+    };
+    let parameters = section.iter().flat_map(Section::fields);
+    for (key, field) in parameters.filter(|(key, _)| *key != "name") {
+        set(&mut technique, key, &field)?;
+    }
+    Ok(technique)
+}
+
+fn named(field: &Field<'_>) -> Result<Technique, ShotError> {
+    let name = field.text(&one_of(&names()))?;
+    Technique::from_name(name)
+        .ok_or_else(|| field.error(Problem::unknown_name("technique", name, &names())))
+}
+
+fn set(technique: &mut Technique, key: &str, field: &Field<'_>) -> Result<(), ShotError> {
+    let value = match field.value() {
+        Value::Integer(number) => techniques::Value::Integer(*number),
+        Value::Real(number) if number.is_finite() => techniques::Value::Real(*number),
+        Value::Text(word) => techniques::Value::Word(word.clone()),
+        Value::Bool(yes) => techniques::Value::Bool(*yes),
+        _ => return Err(field.unexpected("a finite number, a word, true or false")),
+    };
+    let keys: Vec<&str> = technique
+        .params()
+        .iter()
+        .map(|(info, _)| info.key)
+        .collect();
+    technique.set(key, &value).map_err(|error| match error {
+        ParamError::Unknown { .. } => field.error(Problem::UnknownKey {
+            expected: one_of(&keys),
+            similar: similar(key, &keys),
+        }),
+        ParamError::OutOfRange { expected, .. } => field.unexpected(expected),
+    })
+}
