@@ -107,7 +107,7 @@ impl Tracer {
         let mut blocked = false;
         self.tree.along(ray, range, |triangle| {
             let hit = self.meet(&prepared, triangle)?;
-            blocked = (from..=to).contains(&hit.distance) && self.blocks(&hit);
+            blocked |= (from..=to).contains(&hit.distance) && self.blocks(&hit);
             blocked.then_some(f64::NEG_INFINITY)
         });
         blocked

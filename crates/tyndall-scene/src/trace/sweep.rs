@@ -177,7 +177,7 @@ impl Swept {
             normal,
             k: -p / b,
             c,
-            heights: [CLEARANCE * scale, (1.0 - CLEARANCE) / c],
+            heights: [CLEARANCE * scale * b / reach, (1.0 - CLEARANCE) / c],
         })
     }
 }
@@ -232,7 +232,11 @@ impl Sweep {
         if high.y <= floor || low.y >= ceiling {
             return None;
         }
-        let at = |y: f64| low + (high - low) * ((y - low.y) / (high.y - low.y));
+        // Exactly at this height: behind the light s would change its sign.
+        let at = |y: f64| {
+            let share = (y - low.y) / (high.y - low.y);
+            DVec2::new(low.x + (high.x - low.x) * share, y)
+        };
         let low_end = if low.y < floor { at(floor) } else { low };
         let high_end = if high.y > ceiling { at(ceiling) } else { high };
         let [a, b] = [low_end, high_end].map(|q| (q.x + self.k * q.y) / (1.0 - self.c * q.y));
