@@ -1,0 +1,173 @@
+//! The scene as rays see it: hits, exact shadows on view rays, G-buffers and shadow maps, in f64 on all cores.
+//!
+//! | file | what |
+//! |---|---|
+//! | `bvh` | the tree and its traversals |
+//! | `triangle` | watertight ray against triangle |
+//! | `surface` | what a material does to light |
+//! | `sweep` | the exact stretches of a view ray that surfaces shade |
+//! | `texels` | how a textured surface's tint changes along a line |
+//! | `g_buffer` | what the camera sees |
+//! | `light_maps` | what a light sees: shadow maps and glass maps |
+
+mod bvh;
+mod g_buffer;
+mod light_maps;
+mod surface;
+mod sweep;
+#[cfg(test)]
+mod test_scenes;
+mod texels;
+mod triangle;
+
+use glam::{DVec2, DVec3};
+
+use crate::{geometry::Geometry, scene::Scene, texture::MipTexture, view::Ray};
+use bvh::Tree;
+use surface::Surface;
+use triangle::TriangleRay;
+
+pub use g_buffer::GBuffer;
+pub use light_maps::{GLASS_LAYERS, cube_direction};
+
+/// A scene made ready for rays. It owns all it needs; making one takes about a microsecond a triangle.
+pub struct Tracer {
+    geometry: Geometry,
+    tree: Tree,
+    surfaces: Vec<Surface>,
+    textures: Vec<MipTexture>,
+}
+
+/// A point of a surface that a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray [m].
+    pub distance: f64,
+    /// Index into the arrays of [`Tracer::geometry`].
+    pub triangle: usize,
+    /// Weights of the triangle's corners; they add up to 1.
+    pub weights: DVec3,
+}
+
+/// Glass or a blended surface that a ray passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlassHit {
+    /// Distance along the ray [m].
+    pub distance: f64,
+    /// What light is multiplied by, linear RGB.
+    pub tint: DVec3,
+}
+
+impl Tracer {
+    /// Flattens the scene and builds its tree.
+    pub fn new(scene: &Scene) -> Self {
+        let geometry = Geometry::new(scene);
+        let tree = Tree::new(&geometry.positions);
+        let textures: Vec<MipTexture> = scene.textures.iter().map(MipTexture::new).collect();
+        Self {
+            geometry: geometry.reordered(tree.order()),
+            surfaces: scene
+                .materials
+                .iter()
+                .map(|m| Surface::new(m, &textures))
+                .collect(),
+            tree,
+            textures,
+        }
+    }
+
+    /// The scene's triangles, in the order that hits refer to.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The first opaque surface at a distance within `range` [m]. Surfaces with holes (MASK) count where the alpha of
+    /// their texture's largest level, sampled bilinearly, is at least the cutoff; glass and blended surfaces don't.
+    /// Surfaces have two sides. No ray slips through between triangles that share their corners' coordinates.
+    pub fn closest(&self, ray: &Ray, range: [f64; 2]) -> Option<Hit> {
+        let prepared = TriangleRay::new(ray);
+        let [from, mut to] = range;
+        let mut closest = None;
+        self.tree.along(ray, range, |triangle| {
+            let hit = self.meet(&prepared, triangle)?;
+            if !(from..=to).contains(&hit.distance) || !self.blocks(&hit) {
+                return None;
+            }
+            to = hit.distance;
+            closest = Some(hit);
+            Some(to)
+        });
+        closest
+    }
+
+    /// Whether any opaque surface is at a distance within `range` [m]; see [`Tracer::closest`].
+    pub fn blocked(&self, ray: &Ray, range: [f64; 2]) -> bool {
+        let prepared = TriangleRay::new(ray);
+        let [from, to] = range;
+        let mut blocked = false;
+        self.tree.along(ray, range, |triangle| {
+            let hit = self.meet(&prepared, triangle)?;
+            blocked |= (from..=to).contains(&hit.distance) && self.blocks(&hit);
+            blocked.then_some(f64::NEG_INFINITY)
+        });
+        blocked
+    }
+
+    /// Appends the glass and blended surfaces at distances within `range` [m], in any order; clear glass is left out.
+    pub fn glass(&self, ray: &Ray, range: [f64; 2], hits: &mut Vec<GlassHit>) {
+        let prepared = TriangleRay::new(ray);
+        let [from, to] = range;
+        self.tree.along(ray, range, |triangle| {
+            if !self.surface(triangle).is_tinted_glass() {
+                return None;
+            }
+            let hit = self.meet(&prepared, triangle)?;
+            let tint = self.tint(&hit);
+            if (from..=to).contains(&hit.distance) && tint != DVec3::ONE {
+                hits.push(GlassHit {
+                    distance: hit.distance,
+                    tint,
+                });
+            }
+            None
+        });
+    }
+
+    /// True where glass or a blended surface changes the colour of light somewhere.
+    pub fn has_tinted_glass(&self) -> bool {
+        let glass: Vec<bool> = self.surfaces.iter().map(Surface::is_tinted_glass).collect();
+        self.geometry.materials.iter().any(|&m| glass[m as usize])
+    }
+
+    fn surface(&self, triangle: usize) -> &Surface {
+        &self.surfaces[self.geometry.materials[triangle] as usize]
+    }
+
+    fn meet(&self, ray: &TriangleRay, triangle: usize) -> Option<Hit> {
+        let crossing = ray.meet(&self.geometry.positions[triangle])?;
+        Some(Hit {
+            distance: crossing.distance,
+            triangle,
+            weights: crossing.weights,
+        })
+    }
+
+    fn blocks(&self, hit: &Hit) -> bool {
+        self.surface(hit.triangle).can_block() && self.tint(hit) == DVec3::ZERO
+    }
+
+    fn tint(&self, hit: &Hit) -> DVec3 {
+        let surface = self.surface(hit.triangle);
+        surface
+            .uniform
+            .unwrap_or_else(|| surface.tint_at(&self.textures, self.uv(hit.triangle, hit.weights)))
+    }
+
+    fn uv(&self, triangle: usize, weights: DVec3) -> DVec2 {
+        let [a, b, c] = self.geometry.uvs[triangle].map(|uv| uv.as_dvec2());
+        weights.x * a + weights.y * b + weights.z * c
+    }
+}
+
+#[cfg(test)]
+mod tests;
