@@ -1,9 +1,9 @@
 //! Scenes for `tyndall`.
 
 pub mod geometry;
-pub mod load;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod load;
 pub mod scene;
 pub mod texture;
 pub mod trace;

@@ -1,5 +1,7 @@
 //! The physics, as pure functions by topic; each WGSL file holds the twins of its Rust neighbour.
 
+pub mod airlight;
 pub mod medium;
 pub mod phase;
+pub(crate) mod quadrature;
 pub mod transmittance;
