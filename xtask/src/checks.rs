@@ -18,11 +18,10 @@ pub(crate) fn clippy() -> anyhow::Result<()> {
         let without_gpu = [
             "clippy",
             "--release",
-            "-p",
-            package,
+            "--all-targets",
             "--no-default-features",
         ];
-        cargo(&[&without_gpu[..], &deny].concat(), &[])?;
+        cargo(&[&without_gpu[..], &["-p", package], &deny].concat(), &[])?;
     }
     Ok(())
 }
