@@ -48,6 +48,13 @@ pub enum Missing {
     },
 }
 
+impl Missing {
+    /// True where tests may skip themselves: nobody asked for a certain driver, and this is no continuous integration run.
+    pub fn is_excused(&self) -> bool {
+        *self == Self::Driver && !in_ci()
+    }
+}
+
 /// Why the device's memory could not be read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -164,16 +171,16 @@ pub fn device() -> Result<&'static TestDevice, Missing> {
 /// The device, or `None` after saying aloud that `test` is skipped.
 ///
 /// # Panics
-/// In continuous integration, where a missing driver is a failure.
+/// Where the device is missing without [excuse](Missing::is_excused).
 #[allow(clippy::panic, reason = "a test fails by panicking")]
 pub fn device_or_skip(test: &str) -> Option<&'static TestDevice> {
     match device() {
         Ok(device) => Some(device),
-        Err(missing) if in_ci() => panic!("{test}: {missing}"),
-        Err(missing) => {
+        Err(missing) if missing.is_excused() => {
             skip(test, &missing.to_string());
             None
         }
+        Err(missing) => panic!("{test}: {missing}"),
     }
 }
 
@@ -298,6 +305,7 @@ mod tests {
                 .unwrap_err()
                 .to_string()
         };
+        assert!(!choose(&[], Some("swiftshader")).unwrap_err().is_excused());
         assert!(found(&[]).contains("`swiftshader`, found none"));
         assert!(found(&[adapter("Radeon", DeviceType::DiscreteGpu)]).contains("found Radeon"));
     }
