@@ -1,5 +1,6 @@
 //! Scenes for `tyndall`.
 
+pub mod builtin;
 pub mod geometry;
 pub mod load;
 #[cfg(feature = "gpu")]
