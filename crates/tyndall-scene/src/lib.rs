@@ -1,10 +1,11 @@
 //! Scenes for `tyndall`.
 
 pub mod builtin;
+pub mod framing;
 pub mod geometry;
-pub mod load;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod load;
 pub mod scene;
 pub mod texture;
 pub mod trace;
