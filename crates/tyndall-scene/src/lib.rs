@@ -1,5 +1,7 @@
 //! Scenes for `tyndall`.
 
+pub mod builtin;
+pub mod framing;
 pub mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;

@@ -8,7 +8,7 @@ use gltf::{
     },
 };
 
-use super::{Refusal, broken};
+use super::{Refusal, broken, called};
 
 /// Extensions a file may require: those that are read, and those that a Lambert surface can do without.
 const SUPPORTED_EXTENSIONS: &[&str] = &[
@@ -43,6 +43,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Gltf, Refusal> {
     let mut root = document.into_json();
     check_version(&root)?;
     check_extensions(&mut root)?;
+    check_attributes(&root)?;
     check_indices(&root)?;
     let document = Document::from_json_without_validation(root);
     Ok(Gltf { document, blob })
@@ -102,6 +103,22 @@ fn check_extensions(root: &mut json::Root) -> Result<(), Refusal> {
     } else {
         Err(Refusal::UnsupportedExtensions(unsupported.join(", ")))
     }
+}
+
+/// The `gltf` crate's validation takes these indices on trust.
+fn check_attributes(root: &json::Root) -> Result<(), Refusal> {
+    let count = root.accessors.len();
+    for (index, mesh) in root.meshes.iter().enumerate() {
+        let mut accessors = mesh.primitives.iter().flat_map(|p| p.attributes.values());
+        if let Some(accessor) = accessors.find(|accessor| accessor.value() >= count) {
+            let accessor = accessor.value();
+            return Err(broken(
+                called("mesh", index, mesh.name.as_deref()),
+                format!("accessor {accessor} is out of range for {count} accessors"),
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The `gltf` crate's validation, without what it refuses though glTF allows it and nothing here relies on it.

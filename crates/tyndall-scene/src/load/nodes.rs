@@ -7,7 +7,10 @@ use gltf::{Document, json, khr_lights_punctual::Kind, scene::Transform};
 use tyndall::frame::{Emitter, Projection};
 
 use super::{Refusal, broken, called};
-use crate::scene::{Node, Scene};
+use crate::{
+    geometry::world_from_nodes,
+    scene::{Node, Scene},
+};
 
 /// Width / height of cameras that leave it out.
 const DEFAULT_ASPECT: f32 = 4.0 / 3.0;
@@ -243,15 +246,4 @@ pub(super) fn bound_cameras(scene: &mut Scene) {
             *far = farthest.fold(MIN_DEPTH_RATIO * *near, f32::max);
         }
     }
-}
-
-fn world_from_nodes(scene: &Scene) -> Vec<Affine3A> {
-    let mut world_from_node: Vec<Affine3A> = Vec::with_capacity(scene.nodes.len());
-    for node in &scene.nodes {
-        let world_from_parent = node
-            .parent
-            .map_or(Affine3A::IDENTITY, |parent| world_from_node[parent]);
-        world_from_node.push(world_from_parent * node.parent_from_local);
-    }
-    world_from_node
 }
