@@ -408,9 +408,9 @@ fn a_plate_s_shadow_has_the_length_of_similar_triangles() {
 #[test]
 fn the_surface_at_the_ray_s_end_shades_from_behind_only() {
     let tracer = Tracer::new(&opaque(&quad(
-        vec3(-9.0, 0.0, -9.0),
-        18.0 * Vec3::X,
-        18.0 * Vec3::Z,
+        vec3(-500.0, 0.0, -500.0),
+        1000.0 * Vec3::X,
+        1000.0 * Vec3::Z,
     )));
     let mut random = Random::new(16);
     for _ in 0..1000 {
