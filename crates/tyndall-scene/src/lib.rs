@@ -1,10 +1,12 @@
 //! Scenes for `tyndall`.
 
 pub mod geometry;
-pub mod load;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod load;
 pub mod scene;
+pub mod shading;
+pub mod shadow_fit;
 pub mod texture;
 pub mod trace;
 pub mod view;

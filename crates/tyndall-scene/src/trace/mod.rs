@@ -16,7 +16,7 @@ mod light_maps;
 mod surface;
 mod sweep;
 #[cfg(test)]
-mod test_scenes;
+pub(crate) mod test_scenes;
 mod texels;
 mod triangle;
 
@@ -28,7 +28,7 @@ use surface::Surface;
 use triangle::TriangleRay;
 
 pub use g_buffer::GBuffer;
-pub use light_maps::{GLASS_LAYERS, cube_direction};
+pub use light_maps::GLASS_LAYERS;
 
 /// A scene made ready for rays. It owns all it needs; making one takes about a microsecond a triangle.
 pub struct Tracer {
