@@ -8,7 +8,10 @@
 //! **Depth** is reversed (1 at the near plane): floating-point depths are then about equally precise at all distances,
 //! and a near plane close to the light costs nothing.
 
-use glam::{DMat4, DVec2, DVec3};
+use glam::{
+    DMat4, DVec2, DVec3,
+    dcamera::rh::{proj::directx, view},
+};
 use tyndall::frame::{Emitter, ShadowProjection};
 
 use crate::geometry::Geometry;
@@ -67,18 +70,11 @@ fn directional(geometry: &Geometry, direction: DVec3) -> Option<ShadowProjection
     let depth_margin = (MARGIN * (far - near)).max(least);
     let [near, far] = [near - depth_margin, far + depth_margin];
     let world = |v: DVec2| v.x * x + v.y * y;
-    let right = world(rectangle.axis);
-    let up = right.cross(forward);
-    let center = world(rectangle.center);
-    let row = |axis: DVec3, scale: f64, shift: f64| (axis / scale).extend(shift);
-    let clip_from_world = DMat4::from_cols(
-        row(right, half.x, -center.dot(right) / half.x),
-        row(up, half.y, -center.dot(up) / half.y),
-        row(-forward, far - near, far / (far - near)),
-        DVec3::ZERO.extend(1.0),
-    )
-    .transpose();
-    Some(single(clip_from_world))
+    let up = world(rectangle.axis.perp());
+    let view_from_world = view::look_to_mat4(world(rectangle.center), forward, up);
+    // Near and far swapped: reversed depth.
+    let clip_from_view = directx::orthographic(-half.x, half.x, -half.y, half.y, far, near);
+    Some(single(clip_from_view * view_from_world))
 }
 
 fn spot(
@@ -90,21 +86,11 @@ fn spot(
     let forward = direction.try_normalize()?;
     let [nearest, farthest] = extent(corners(geometry).map(|p| (p - position).dot(forward)))?;
     let [near, far] = planes(nearest, farthest)?;
-    let (right, up) = forward.any_orthonormal_pair();
-    // Right-handed, looking along -z.
-    let up = up * right.cross(up).dot(-forward).signum();
-    let focal = 1.0 / (outer.tan() * (1.0 + MARGIN));
-    let row = |axis: DVec3| axis.extend(-axis.dot(position));
-    let scale = near / (far - near);
-    let depth = row(-scale * forward);
-    let clip_from_world = DMat4::from_cols(
-        row(focal * right),
-        row(focal * up),
-        depth + glam::DVec4::W * scale * far,
-        row(forward),
-    )
-    .transpose();
-    Some(single(clip_from_world))
+    let half_angle = (outer.tan() * (1.0 + MARGIN)).atan();
+    let view_from_world = view::look_to_mat4(position, forward, forward.any_orthonormal_vector());
+    // Near and far swapped: reversed depth.
+    let clip_from_view = directx::perspective(2.0 * half_angle, 1.0, far, near);
+    Some(single(clip_from_view * view_from_world))
 }
 
 fn cube(geometry: &Geometry, position: DVec3) -> Option<ShadowProjection> {
