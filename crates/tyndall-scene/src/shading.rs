@@ -2,11 +2,11 @@
 //!
 //! Radiance towards the eye of a surface with base colour `c`, unit normal `n` and point `p`:
 //!
-//! `view_tint * (emissive + c / pi * sum over lights of (visibility * max(-n . l, 0) * full + AMBIENT * bare))`
+//! `view_tint * (emissive + c / pi * sum over lights of (visibility * max(-n . l, 0) * full + ambient * bare))`
 //!
 //! where `l` is the way the light travels and `full` the irradiance on a surface facing it: with the spot's cone and the light's
 //! texture, and for local lights exp(-sigma_t d) / d^2 ([`LightModel::incident`]). `bare` is the same without cone and
-//! texture, so that nothing is quite black. Attenuation between surface and eye is left to the composite.
+//! texture; times `ambient` = [`AMBIENT`] * (1 + [`AMBIENT_TILT`] * n.y) it keeps what is unlit from being quite black. Attenuation between surface and eye is left to the composite.
 //!
 //! **Visibility** compares depths at the four texels round a point, weighted bilinearly, each multiplied by the tints of the glass
 //! layers before the point. The point is `p` moved along `n` by [`NORMAL_OFFSET_TEXELS`] texels, as large as texels are at `p`:
@@ -38,6 +38,8 @@ use crate::trace::GBuffer;
 pub const NORMAL_OFFSET_TEXELS: f64 = 2.0;
 /// Irradiance from all around, relative to what a light would give a surface that faces it unblocked.
 pub const AMBIENT: f64 = 0.03;
+/// How much more of it falls on what faces up, and less on what faces down.
+pub const AMBIENT_TILT: f64 = 0.5;
 /// Radiance of the sky at the horizon and below, relative to the sun's illuminance [1/sr].
 pub const SKY_HORIZON: [f64; 3] = [0.075, 0.085, 0.10];
 /// Radiance of the sky overhead, relative to the sun's illuminance [1/sr].
@@ -150,11 +152,12 @@ impl<'a> SurfaceLight<'a> {
                 incident.irradiance * (-normal.dot(incident.direction)).max(0.0)
             })
             .sum();
-        let ambient: DVec3 = self
+        let bare: DVec3 = self
             .bare
             .iter()
-            .map(|sample| AMBIENT * sample.incident(point, optics).irradiance)
+            .map(|sample| sample.incident(point, optics).irradiance)
             .sum();
+        let ambient = AMBIENT * (1.0 + AMBIENT_TILT * normal.y) * bare;
         if direct == DVec3::ZERO {
             return ambient;
         }
@@ -326,6 +329,9 @@ mod tests {
         },
     };
 
+    /// On the ground.
+    const AMBIENT_UP: f64 = AMBIENT * (1.0 + AMBIENT_TILT);
+
     const SIZE: [u32; 2] = [48, 48];
 
     /// Looks down from y = 6 onto 6 x 6 m of the ground.
@@ -435,11 +441,11 @@ mod tests {
             let d = (p - lamp).length();
             let to = (p - lamp) / d;
             let irradiance = 7.0 * (-0.1 * d).exp() / (d * d);
-            irradiance * (-to.y * if cone { falloff(to) } else { 1.0 } + AMBIENT)
+            irradiance * (-to.y * if cone { falloff(to) } else { 1.0 } + AMBIENT_UP)
         };
         type Expected<'a> = &'a dyn Fn(DVec3) -> f64;
         let cases: [(Emitter, Expected<'_>); 3] = [
-            (SUN, &|_| 10.0 * (0.8 + AMBIENT)),
+            (SUN, &|_| 10.0 * (0.8 + AMBIENT_UP)),
             (point, &|p| local(p, false)),
             (spot, &|p| local(p, true)),
         ];
@@ -466,8 +472,8 @@ mod tests {
     fn shadows_have_the_place_and_size_of_their_blocker() {
         let plate = quad(vec3(-1.0, 2.0, -1.0), 2.0 * Vec3::X, 2.0 * Vec3::Z);
         let with_plate = opaque(&[ground(), plate.to_vec()].concat());
-        let ambient = 0.5 / PI * 10.0 * AMBIENT;
-        let lit = 0.5 / PI * 10.0 * (0.8 + AMBIENT);
+        let ambient = 0.5 / PI * 10.0 * AMBIENT_UP;
+        let lit = 0.5 / PI * 10.0 * (0.8 + AMBIENT_UP);
         let found = picture(&with_plate, SUN, Some(2048), 0.0);
         let mut counts = [0; 2];
         for (pixel, value) in found.iter().enumerate() {
@@ -548,7 +554,7 @@ mod tests {
         let found = picture(&both, SUN, Some(256), 0.0);
         // Seen through the pane and lit through it: the middle of the picture.
         let expected =
-            0.5 / PI * DVec3::new(10.0, 5.0, 2.0) * (0.8 * DVec3::new(0.8, 0.1, 0.2) + AMBIENT);
+            0.5 / PI * DVec3::new(10.0, 5.0, 2.0) * (0.8 * DVec3::new(0.8, 0.1, 0.2) + AMBIENT_UP);
         let expected = DVec3::new(0.8, 0.1, 0.2) * expected;
         let middle = found[24 * 48 + 24];
         assert!(
@@ -586,7 +592,7 @@ mod tests {
         };
         let found = picture(&opaque(&ground()), rect, None, 0.0)[24 * 48 + 24];
         // cross(edge_x, edge_y) points down: the ground is on the bright side.
-        let expected = 0.5 / PI * 25.0 / f64::from(height * height) * (1.0 + AMBIENT);
+        let expected = 0.5 / PI * 25.0 / f64::from(height * height) * (1.0 + AMBIENT_UP);
         assert!(
             (found.x / expected - 1.0).abs() < 1e-3,
             "{}, {expected}",

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::{DMat4, DVec2, DVec3};
+use glam::{DMat4, DVec2};
 use rayon::prelude::*;
 use tyndall::{
     cpu::{GlassMap, Progress, ShadowMap},
@@ -28,11 +28,12 @@ impl Tracer {
         progress: Progress<'_>,
     ) -> ShadowMap {
         let rays = MapRays::new(emitter, projection, size);
-        let depth = rays.map_texels(progress, |face, ray, length| {
-            self.closest(ray, [0.0, length])
+        let depth = rays.flat_map_texels(progress, |texel| {
+            [self
+                .closest(&texel.ray, [0.0, texel.length])
                 .map_or(rays.far_value(), |hit| {
-                    rays.stored_depth(face, ray.at(hit.distance))
-                })
+                    rays.stored_depth(&texel, hit.distance)
+                })]
         });
         ShadowMap { size, depth }
     }
@@ -51,22 +52,24 @@ impl Tracer {
             return None;
         }
         let rays = MapRays::new(emitter, projection, size);
-        let columns = rays.map_texels(progress, |face, ray, length| {
-            let mut column = vec![[1.0, 1.0, 1.0, rays.far_value()]; layers as usize];
-            for (texel, pane) in column.iter_mut().zip(self.panes(ray, length)) {
+        // Most texels see no glass: what they see is gathered first and strewn over an empty map.
+        let panes = rays.flat_map_texels(progress, |texel| {
+            let panes = self.panes(&texel.ray, texel.length);
+            let stored = |pane: &GlassHit| {
                 let [r, g, b] = pane.tint.as_vec3().to_array();
-                *texel = [r, g, b, rays.stored_depth(face, ray.at(pane.distance))];
-            }
-            column
+                [r, g, b, rays.stored_depth(&texel, pane.distance)]
+            };
+            let shown = panes.iter().take(layers as usize).enumerate();
+            shown
+                .map(|(layer, pane)| (texel.face, layer, texel.index, stored(pane)))
+                .collect::<Vec<_>>()
         });
-        let face_texels = (size[0] as usize * size[1] as usize).max(1);
-        let layer = |face: &[Vec<[f32; 4]>], layer: usize| -> Vec<[f32; 4]> {
-            face.iter().map(|column| column[layer]).collect()
-        };
-        let texels = columns
-            .chunks_exact(face_texels)
-            .flat_map(|face| (0..layers as usize).flat_map(move |l| layer(face, l)))
-            .collect();
+        let plane = size[0] as usize * size[1] as usize;
+        let count = rays.faces.len() * layers as usize * plane;
+        let mut texels = vec![[1.0, 1.0, 1.0, rays.far_value()]; count];
+        for (face, layer, index, texel) in panes {
+            texels[(face * layers as usize + layer) * plane + index] = texel;
+        }
         Some(GlassMap {
             size,
             layers,
@@ -95,6 +98,17 @@ struct MapRays {
     reversed: bool,
 }
 
+/// A texel's place and its ray.
+struct Texel {
+    face: usize,
+    /// Within its face, row by row.
+    index: usize,
+    /// From the near plane.
+    ray: Ray,
+    /// Distance to the far plane [m].
+    length: f64,
+}
+
 /// A face's projection, with depth 1 at the near plane, and its inverse.
 struct Face {
     clip_from_world: DMat4,
@@ -119,49 +133,53 @@ impl MapRays {
         }
     }
 
-    /// The values of all texels, face by face, row by row. `value` is given the texel's face, its ray from the near
-    /// plane and the ray's length to the far plane [m].
-    fn map_texels<T: Send>(
+    /// What `values` gives for all texels, face by face, row by row.
+    fn flat_map_texels<T: Send, I: IntoIterator<Item = T>>(
         &self,
         progress: Progress<'_>,
-        value: impl Fn(&Face, &Ray, f64) -> T + Sync,
+        values: impl Fn(Texel) -> I + Sync,
     ) -> Vec<T> {
-        let width = u64::from(self.size[0]);
-        let total = self.faces.len() as u64 * width * u64::from(self.size[1]);
+        let [width, height] = self.size.map(|n| n as usize);
+        let total = (self.faces.len() * width * height) as u64;
         let done = AtomicU64::new(0);
-        let row_of_texels = |(face, y): (&Face, u32)| -> Vec<T> {
-            let texels = (0..self.size[0])
-                .map(|x| {
-                    let (ray, length) = self.ray(face, x, y);
-                    value(face, &ray, length)
-                })
-                .collect();
-            progress(done.fetch_add(width, Ordering::Relaxed) + width, total);
-            texels
+        let row_of_values = |row: usize| -> Vec<T> {
+            let first = row % height * width;
+            let texels = (first..first + width).map(|index| self.texel(row / height, index));
+            let values = texels.flat_map(&values).collect();
+            progress(
+                done.fetch_add(width as u64, Ordering::Relaxed) + width as u64,
+                total,
+            );
+            values
         };
-        self.faces
-            .par_iter()
-            .flat_map(|face| (0..self.size[1]).into_par_iter().map(move |y| (face, y)))
-            .flat_map_iter(row_of_texels)
+        (0..self.faces.len() * height)
+            .into_par_iter()
+            .flat_map_iter(row_of_values)
             .collect()
     }
 
-    fn ray(&self, face: &Face, x: u32, y: u32) -> (Ray, f64) {
-        let texel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+    fn texel(&self, face: usize, index: usize) -> Texel {
+        let (x, y) = (index % self.size[0] as usize, index / self.size[0] as usize);
         let size = DVec2::from(self.size.map(f64::from));
-        let ndc = DVec2::new(2.0, -2.0) * (texel / size - 0.5);
-        let [from, to] = [1.0, 0.0].map(|z| face.world_from_clip.project_point3(ndc.extend(z)));
+        let ndc = DVec2::new(2.0, -2.0) * ((DVec2::new(x as f64, y as f64) + 0.5) / size - 0.5);
+        let world_from_clip = self.faces[face].world_from_clip;
+        let [from, to] = [1.0, 0.0].map(|z| world_from_clip.project_point3(ndc.extend(z)));
         let length = (to - from).length();
-        let ray = Ray {
-            origin: from,
-            direction: (to - from) / length,
-        };
-        (ray, length)
+        Texel {
+            face,
+            index,
+            ray: Ray {
+                origin: from,
+                direction: (to - from) / length,
+            },
+            length,
+        }
     }
 
-    /// What the map holds for a surface at this point.
-    fn stored_depth(&self, face: &Face, point: DVec3) -> f32 {
-        self.stored(face.clip_from_world.project_point3(point).z)
+    /// What the map holds for a surface at a distance along a texel's ray [m].
+    fn stored_depth(&self, texel: &Texel, distance: f64) -> f32 {
+        let clip_from_world = self.faces[texel.face].clip_from_world;
+        self.stored(clip_from_world.project_point3(texel.ray.at(distance)).z)
     }
 
     /// What the map holds where there is no surface.
@@ -181,7 +199,7 @@ impl MapRays {
 #[cfg(test)]
 mod tests {
     use glam::{
-        Vec2, Vec3,
+        DVec3, Vec2, Vec3,
         camera::rh::{proj::directx, view},
         vec3,
     };
