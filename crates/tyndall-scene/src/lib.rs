@@ -7,6 +7,8 @@ pub mod geometry;
 pub mod gpu;
 pub mod load;
 pub mod scene;
+pub mod shading;
+pub mod shadow_fit;
 pub mod texture;
 pub mod trace;
 pub mod view;

@@ -1,7 +1,10 @@
 //! From pixels to view rays, and from view depth to what a depth buffer holds.
 
-use glam::{DVec2, DVec3};
-use tyndall::frame::{Camera, Projection};
+use glam::DVec3;
+use tyndall::{
+    camera::CameraRays,
+    frame::{Camera, Projection},
+};
 
 /// A ray in world space [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,31 +23,26 @@ impl Ray {
 }
 
 /// How a depth buffer stores distance along an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DepthRange {
+#[derive(Clone, Copy, Debug)]
+struct DepthRange {
     /// Depth of the near plane [m].
-    pub near: f64,
+    near: f64,
     /// Depth of the far plane [m].
-    pub far: f64,
+    far: f64,
     /// True where the buffer holds 1 at `near` and 0 at `far`.
-    pub reversed: bool,
+    reversed: bool,
 }
 
 impl DepthRange {
     /// What a perspective projection stores for a depth [m].
-    pub fn perspective(&self, depth: f64) -> f64 {
+    fn perspective(&self, depth: f64) -> f64 {
         let Self { near, far, .. } = *self;
         self.stored(near * (far - depth) / (depth * (far - near)))
     }
 
     /// What an orthographic projection stores for a depth [m].
-    pub fn orthographic(&self, depth: f64) -> f64 {
+    fn orthographic(&self, depth: f64) -> f64 {
         self.stored((self.far - depth) / (self.far - self.near))
-    }
-
-    /// What is stored at the far plane.
-    pub fn far_value(&self) -> f32 {
-        if self.reversed { 0.0 } else { 1.0 }
     }
 
     fn stored(&self, from_far: f64) -> f64 {
@@ -57,13 +55,9 @@ impl DepthRange {
 }
 
 /// A camera's picture: the rays through its pixels and the depths it stores.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct View {
-    eye: DVec3,
-    right: DVec3,
-    up: DVec3,
-    forward: DVec3,
-    size: DVec2,
+    rays: CameraRays,
     projection: Projection,
     range: DepthRange,
 }
@@ -71,19 +65,10 @@ pub struct View {
 impl View {
     /// A camera that takes a picture of `size` [pixels].
     pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
-        let vector = |v: [f32; 3]| DVec3::from(v.map(f64::from));
-        let forward = vector(camera.forward).normalize_or(DVec3::NEG_Z);
-        let right = forward
-            .cross(vector(camera.up))
-            .normalize_or(forward.any_orthonormal_vector());
         let (Projection::Perspective { near, far, .. }
         | Projection::Orthographic { near, far, .. }) = camera.projection;
         Self {
-            eye: vector(camera.eye),
-            right,
-            up: right.cross(forward),
-            forward,
-            size: DVec2::from(size.map(f64::from)),
+            rays: CameraRays::new(camera, size),
             projection: camera.projection,
             range: DepthRange {
                 near: f64::from(near),
@@ -95,41 +80,21 @@ impl View {
 
     /// The ray through the centre of pixel (x, y), (0, 0) at the top left. It starts at view depth 0.
     pub fn ray(&self, x: u32, y: u32) -> Ray {
-        let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-        let ndc = DVec2::new(2.0, -2.0) * (pixel / self.size - 0.5);
-        let (Projection::Perspective {
-            half_extent,
-            center,
-            ..
-        }
-        | Projection::Orthographic {
-            half_extent,
-            center,
-            ..
-        }) = self.projection;
-        let [half_extent, center] = [half_extent, center].map(|v| DVec2::from(v.map(f64::from)));
-        let lateral = center + half_extent * ndc;
-        let offset = lateral.x * self.right + lateral.y * self.up;
-        match self.projection {
-            Projection::Perspective { .. } => Ray {
-                origin: self.eye,
-                direction: (self.forward + offset).normalize(),
-            },
-            Projection::Orthographic { .. } => Ray {
-                origin: self.eye + offset,
-                direction: self.forward,
-            },
+        let ray = self.rays.ray(x, y, self.far_value());
+        Ray {
+            origin: ray.origin,
+            direction: ray.direction,
         }
     }
 
     /// Distances along a ray of this view at which it crosses the near and the far plane [m].
     pub fn span(&self, ray: &Ray) -> [f64; 2] {
-        [self.range.near, self.range.far].map(|depth| depth / ray.direction.dot(self.forward))
+        [self.range.near, self.range.far].map(|depth| depth / self.slope(ray))
     }
 
     /// What the depth buffer holds for a distance along a ray of this view [m].
     pub fn stored_depth(&self, ray: &Ray, distance: f64) -> f32 {
-        let depth = distance * ray.direction.dot(self.forward);
+        let depth = distance * self.slope(ray);
         (match self.projection {
             Projection::Perspective { .. } => self.range.perspective(depth),
             Projection::Orthographic { .. } => self.range.orthographic(depth),
@@ -138,7 +103,12 @@ impl View {
 
     /// What the depth buffer holds where nothing was drawn.
     pub fn far_value(&self) -> f32 {
-        self.range.far_value()
+        if self.range.reversed { 0.0 } else { 1.0 }
+    }
+
+    /// View depth gained per distance along a ray.
+    fn slope(&self, ray: &Ray) -> f64 {
+        ray.direction.dot(self.rays.forward)
     }
 }
 
@@ -163,7 +133,6 @@ mod tests {
                 assert!((of(&range, 0.5) - near).abs() < 1e-15);
                 assert!((of(&range, 20.0) - far).abs() < 1e-15);
             }
-            assert_eq!(f64::from(range.far_value()), far);
         }
     }
 

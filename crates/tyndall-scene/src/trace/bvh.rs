@@ -3,13 +3,13 @@
 //! `obvhs`' own traversals take rays in f32. Ours may not miss a triangle that f64 arithmetic hits: boxes are padded by
 //! more than the rounding errors of the f32 box tests, and triangles are left to the caller, who tests them in f64.
 
-use std::time::Duration;
+use std::{ops::Range, time::Duration};
 
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::{
     BvhBuildParams,
     aabb::Aabb,
-    bvh2::{Bvh2, builder::build_bvh2},
+    bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node},
 };
 
 use crate::view::Ray;
@@ -17,23 +17,26 @@ use crate::view::Ray;
 /// Padding of the boxes, relative to the largest coordinate: an f32 slab test errs by less than 14 roundings (8e-7).
 const PADDING: f32 = 2e-6;
 
-/// A tree over triangles, whose leaves are ranges of the triangles in [`Tree::order`].
+/// A tree over some triangles of a scene.
 pub(super) struct Tree {
     bvh: Bvh2,
-    /// Largest coordinate of any triangle [m].
+    /// Largest coordinate of the triangles [m].
     scale: f32,
+    /// What is added to the places of `bvh`'s leaves.
+    offset: usize,
 }
 
 impl Tree {
-    pub(super) fn new(triangles: &[[Vec3; 3]]) -> Self {
-        let boxes: Vec<Aabb> = triangles
+    /// A tree over the triangles `chosen`. It calls the n-th of its leaves' triangles `order.len() + n`, and appends to
+    /// `order` what they were called before.
+    pub(super) fn new(triangles: &[[Vec3; 3]], chosen: &[u32], order: &mut Vec<u32>) -> Self {
+        let boxes: Vec<Aabb> = chosen
             .iter()
-            .map(|t| Aabb::from_points(&t.map(Vec3A::from)))
+            .map(|&t| Aabb::from_points(&triangles[t as usize].map(Vec3A::from)))
             .collect();
-        let scale = triangles
-            .iter()
-            .flatten()
-            .fold(0.0, |scale: f32, p| scale.max(p.abs().max_element()));
+        let scale = boxes.iter().fold(0.0, |scale: f32, b| {
+            scale.max(b.min.abs().max(b.max.abs()).max_element())
+        });
         // The builder measures time whether one wants to know or not.
         let mut build_time = Duration::ZERO;
         let mut bvh = if boxes.is_empty() {
@@ -45,15 +48,17 @@ impl Tree {
         for node in &mut bvh.nodes {
             node.aabb = Aabb::new(node.aabb.min - padding, node.aabb.max + padding);
         }
-        Self { bvh, scale }
+        let offset = order.len();
+        order.extend(bvh.primitive_indices.iter().map(|&i| chosen[i as usize]));
+        Self { bvh, scale, offset }
     }
 
-    /// The order in which the leaves refer to the triangles.
-    pub(super) fn order(&self) -> &[u32] {
-        &self.bvh.primitive_indices
+    /// True where there are no triangles.
+    pub(super) fn is_empty(&self) -> bool {
+        self.bvh.nodes.is_empty()
     }
 
-    /// Largest coordinate of any triangle [m].
+    /// Largest coordinate of the triangles [m].
     pub(super) fn scale(&self) -> f64 {
         f64::from(self.scale)
     }
@@ -78,8 +83,8 @@ impl Tree {
             }
             let node = &nodes[index as usize];
             if node.is_leaf() {
-                for triangle in node.first_index..node.first_index + node.prim_count {
-                    if let Some(to) = leaf(triangle as usize) {
+                for triangle in self.triangles(node) {
+                    if let Some(to) = leaf(triangle) {
                         slabs.shorten(to);
                     }
                 }
@@ -111,12 +116,17 @@ impl Tree {
                 continue;
             }
             if node.is_leaf() {
-                let first = node.first_index as usize;
-                (first..first + node.prim_count as usize).for_each(&mut leaf);
+                self.triangles(node).for_each(&mut leaf);
             } else {
                 stack.extend([node.first_index, node.first_index + 1]);
             }
         }
+    }
+
+    /// A leaf's triangles.
+    fn triangles(&self, leaf: &Bvh2Node) -> Range<usize> {
+        let first = self.offset + leaf.first_index as usize;
+        first..first + leaf.prim_count as usize
     }
 
     /// The ray from where it enters the tree: near the boxes, f32 is precise enough for them.

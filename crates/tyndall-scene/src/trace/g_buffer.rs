@@ -134,3 +134,174 @@ impl Tracer {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, vec3};
+    use tyndall::frame::Projection;
+
+    use super::*;
+    use crate::{
+        scene::{Blocking, Scene, Texture, Wrap},
+        trace::test_scenes::{ball, material, opaque, quad, scene},
+    };
+
+    /// Looks along -z from z = 4; 90 degrees high and wide, or 8 m.
+    fn cameras() -> [Camera; 4] {
+        let at_origin = |perspective: bool, reversed_depth: bool| Camera {
+            eye: [0.0, 0.0, 4.0],
+            forward: [0.0, 0.0, -1.0],
+            up: [0.0, 1.0, 0.0],
+            projection: if perspective {
+                Projection::Perspective {
+                    half_extent: [1.0; 2],
+                    center: [0.0; 2],
+                    near: 0.5,
+                    far: 16.0,
+                }
+            } else {
+                Projection::Orthographic {
+                    half_extent: [4.0; 2],
+                    center: [0.0; 2],
+                    near: 0.5,
+                    far: 16.0,
+                }
+            },
+            reversed_depth,
+        };
+        [
+            at_origin(true, true),
+            at_origin(true, false),
+            at_origin(false, true),
+            at_origin(false, false),
+        ]
+    }
+
+    fn g_buffer(scene: &Scene, camera: &Camera, size: [u32; 2]) -> GBuffer {
+        Tracer::new(scene).g_buffer(camera, size, &|_, _| ())
+    }
+
+    #[test]
+    fn a_ball_has_the_depth_and_the_normals_of_a_ball() {
+        let tracer_scene = opaque(&ball(Vec3::ZERO, 1.0, 96));
+        for camera in cameras() {
+            let picture = g_buffer(&tracer_scene, &camera, [64, 64]);
+            let rays = tyndall::camera::CameraRays::new(&camera, [64, 64]);
+            let mut hits = 0;
+            for (i, &depth) in picture.depth.iter().enumerate() {
+                if depth == View::new(&camera, [64, 64]).far_value() {
+                    assert_eq!(picture.normal[i], [0.0; 3]);
+                    continue;
+                }
+                hits += 1;
+                let ray = rays.ray(i as u32 % 64, i as u32 / 64, depth);
+                let point = ray.at(ray.length);
+                // A polyhedron of 96 rings is at most 5.4e-4 inside its ball.
+                assert!((0.9994..1.00001).contains(&point.length()), "{point}");
+                let normal = DVec3::from(picture.normal[i].map(f64::from));
+                // Its flat sides turn by at most 0.033 from one to the next.
+                assert!(
+                    normal.is_normalized() && normal.dot(point) > 0.9992,
+                    "{normal} at {point}"
+                );
+            }
+            assert!(hits > 100, "only {hits} pixels of the ball");
+        }
+    }
+
+    #[test]
+    fn normals_face_the_viewer_on_either_side() {
+        let front = quad(vec3(-9.0, -9.0, 0.0), 18.0 * Vec3::X, 18.0 * Vec3::Y);
+        let back = front.map(|[a, b, c]| [a, c, b]);
+        for triangles in [front, back] {
+            let picture = g_buffer(&opaque(&triangles), &cameras()[0], [4, 4]);
+            assert_eq!(picture.normal, [[0.0, 0.0, 1.0]; 16]);
+        }
+    }
+
+    #[test]
+    fn near_and_far_planes_end_the_view() {
+        let wall = |z: f32| quad(vec3(-99.0, -99.0, z), 198.0 * Vec3::X, 198.0 * Vec3::Y);
+        // View depth is 4 - z; the planes are at 0.5 and 16.
+        for (walls, expected) in [
+            (vec![wall(3.6), wall(0.0)], 4.0),
+            (vec![wall(3.4), wall(0.0)], 0.6),
+            (vec![wall(3.6), wall(-11.9)], 15.9),
+            (vec![wall(3.6), wall(-12.1)], 16.0),
+        ] {
+            for camera in cameras() {
+                let picture = g_buffer(&opaque(&walls.concat()), &camera, [5, 5]);
+                for depth in picture.depth {
+                    let found = tyndall::camera::CameraRays::new(&camera, [5, 5]).view_depth(depth);
+                    // Not reversed, f32 near 1 is coarse: 2 / 2^25 of 16^2 / 0.5.
+                    assert!(
+                        (found - expected).abs() < 4e-5,
+                        "{found}, expected {expected}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn glass_tints_the_view_of_what_is_behind_it_only() {
+        let pane = |z: f32| quad(vec3(-99.0, -99.0, z), 198.0 * Vec3::X, 198.0 * Vec3::Y);
+        let glass = material(
+            Blocking::Transmissive { transmission: 0.5 },
+            [1.0, 0.5, 0.0, 1.0],
+        );
+        let mut both = scene(
+            &[pane(1.0), pane(2.0), pane(-1.0)].concat(),
+            |_| Vec2::ZERO,
+            glass,
+            None,
+        );
+        let mut wall = opaque(&pane(0.0));
+        wall.meshes[0].primitives[0].material = 1;
+        both.materials.extend(wall.materials);
+        let picture = g_buffer(&both, &cameras()[0], [3, 3]);
+        // Without the wall, all three panes tint the far plane.
+        assert_eq!(picture.view_tint, [[0.125, 0.015_625, 0.0]; 9]);
+        both.meshes[0]
+            .primitives
+            .extend(wall.meshes.remove(0).primitives);
+        let picture = g_buffer(&both, &cameras()[0], [3, 3]);
+        assert_eq!(picture.view_tint, [[0.25, 0.0625, 0.0]; 9]);
+        assert_eq!(picture.base_color, [[0.5; 3]; 9]);
+    }
+
+    /// A checkerboard of 256 texels over 8 m, seen from so far that a pixel covers 2^n texels, has the colour of level n:
+    /// crisp from near, an even grey from far.
+    #[test]
+    fn textures_blur_with_distance() {
+        let checker = Texture {
+            size: [256, 256],
+            texels: (0..256 * 256)
+                .map(|i| [if (i + i / 256) % 2 == 0 { 255 } else { 0 }; 4])
+                .collect(),
+            wrap: [Wrap::Repeat; 2],
+        };
+        let wall = quad(vec3(-4.0, -4.0, 0.0), 8.0 * Vec3::X, 8.0 * Vec3::Y);
+        let white = material(Blocking::Opaque, [1.0, 1.0, 0.5, 1.0]);
+        let uv = |p: Vec3| (p.truncate() + 4.0) / 8.0;
+        let checkered = scene(&wall, uv, white, Some(checker));
+        // Perspective, then orthographic: both see just the wall at z = 0. A pixel's centre is a texel's at 256.
+        for camera in [cameras()[0], cameras()[2]] {
+            let crisp = g_buffer(&checkered, &camera, [256, 256]);
+            // 0.002: the levels' rounding to 8 bits; coordinates are f32.
+            assert!(
+                crisp
+                    .base_color
+                    .iter()
+                    .all(|c| c[0] < 0.002 || c[0] > 0.998)
+            );
+            let blurred = g_buffer(&checkered, &camera, [128, 128]);
+            assert!(
+                blurred
+                    .base_color
+                    .iter()
+                    .all(|c| (c[0] - 0.5).abs() < 0.004 && (c[2] - 0.25).abs() < 0.002)
+            );
+        }
+    }
+}

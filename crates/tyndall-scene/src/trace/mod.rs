@@ -16,7 +16,7 @@ mod light_maps;
 mod surface;
 mod sweep;
 #[cfg(test)]
-mod test_scenes;
+pub(crate) mod test_scenes;
 mod texels;
 mod triangle;
 
@@ -28,12 +28,15 @@ use surface::Surface;
 use triangle::TriangleRay;
 
 pub use g_buffer::GBuffer;
-pub use light_maps::{GLASS_LAYERS, cube_direction};
+pub use light_maps::GLASS_LAYERS;
 
 /// A scene made ready for rays. It owns all it needs; making one takes about a microsecond a triangle.
 pub struct Tracer {
     geometry: Geometry,
-    tree: Tree,
+    /// What light and view rays can end on.
+    blockers: Tree,
+    /// What changes their colour.
+    glass: Tree,
     surfaces: Vec<Surface>,
     textures: Vec<MipTexture>,
 }
@@ -62,16 +65,27 @@ impl Tracer {
     /// Flattens the scene and builds its tree.
     pub fn new(scene: &Scene) -> Self {
         let geometry = Geometry::new(scene);
-        let tree = Tree::new(&geometry.positions);
         let textures: Vec<MipTexture> = scene.textures.iter().map(MipTexture::new).collect();
+        let surfaces: Vec<Surface> = scene
+            .materials
+            .iter()
+            .map(|material| Surface::new(material, &textures))
+            .collect();
+        let surface = |triangle: &u32| &surfaces[geometry.materials[*triangle as usize] as usize];
+        let count = geometry.len() as u32;
+        let (blockers, others): (Vec<u32>, Vec<u32>) =
+            (0..count).partition(|t| surface(t).can_block());
+        let (glass, clear): (Vec<u32>, Vec<u32>) =
+            others.iter().partition(|t| surface(t).is_tinted_glass());
+        let mut order = Vec::with_capacity(geometry.len());
+        let blockers = Tree::new(&geometry.positions, &blockers, &mut order);
+        let glass = Tree::new(&geometry.positions, &glass, &mut order);
+        order.extend(clear);
         Self {
-            geometry: geometry.reordered(tree.order()),
-            surfaces: scene
-                .materials
-                .iter()
-                .map(|m| Surface::new(m, &textures))
-                .collect(),
-            tree,
+            geometry: geometry.reordered(&order),
+            blockers,
+            glass,
+            surfaces,
             textures,
         }
     }
@@ -88,7 +102,7 @@ impl Tracer {
         let prepared = TriangleRay::new(ray);
         let [from, mut to] = range;
         let mut closest = None;
-        self.tree.along(ray, range, |triangle| {
+        self.blockers.along(ray, range, |triangle| {
             let hit = self.meet(&prepared, triangle)?;
             if !(from..=to).contains(&hit.distance) || !self.blocks(&hit) {
                 return None;
@@ -105,7 +119,7 @@ impl Tracer {
         let prepared = TriangleRay::new(ray);
         let [from, to] = range;
         let mut blocked = false;
-        self.tree.along(ray, range, |triangle| {
+        self.blockers.along(ray, range, |triangle| {
             let hit = self.meet(&prepared, triangle)?;
             blocked |= (from..=to).contains(&hit.distance) && self.blocks(&hit);
             blocked.then_some(f64::NEG_INFINITY)
@@ -117,10 +131,7 @@ impl Tracer {
     pub fn glass(&self, ray: &Ray, range: [f64; 2], hits: &mut Vec<GlassHit>) {
         let prepared = TriangleRay::new(ray);
         let [from, to] = range;
-        self.tree.along(ray, range, |triangle| {
-            if !self.surface(triangle).is_tinted_glass() {
-                return None;
-            }
+        self.glass.along(ray, range, |triangle| {
             let hit = self.meet(&prepared, triangle)?;
             let tint = self.tint(&hit);
             if (from..=to).contains(&hit.distance) && tint != DVec3::ONE {
@@ -135,8 +146,12 @@ impl Tracer {
 
     /// True where glass or a blended surface changes the colour of light somewhere.
     pub fn has_tinted_glass(&self) -> bool {
-        let glass: Vec<bool> = self.surfaces.iter().map(Surface::is_tinted_glass).collect();
-        self.geometry.materials.iter().any(|&m| glass[m as usize])
+        !self.glass.is_empty()
+    }
+
+    /// The largest coordinate of any surface that changes light [m].
+    fn scale(&self) -> f64 {
+        self.blockers.scale().max(self.glass.scale())
     }
 
     fn surface(&self, triangle: usize) -> &Surface {
@@ -153,7 +168,7 @@ impl Tracer {
     }
 
     fn blocks(&self, hit: &Hit) -> bool {
-        self.surface(hit.triangle).can_block() && self.tint(hit) == DVec3::ZERO
+        self.tint(hit) == DVec3::ZERO
     }
 
     fn tint(&self, hit: &Hit) -> DVec3 {

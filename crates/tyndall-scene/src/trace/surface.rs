@@ -33,12 +33,18 @@ impl Surface {
 
     /// True where light and view rays can end here.
     pub(super) fn can_block(&self) -> bool {
-        matches!(self.blocking, Blocking::Opaque | Blocking::Masked { .. })
+        match self.blocking {
+            Blocking::Opaque | Blocking::Masked { .. } => self.uniform != Some(DVec3::ONE),
+            Blocking::Transmissive { .. } | Blocking::Blended => false,
+        }
     }
 
     /// True where it is glass that changes the light's colour somewhere.
     pub(super) fn is_tinted_glass(&self) -> bool {
-        !self.can_block() && self.uniform != Some(DVec3::ONE)
+        match self.blocking {
+            Blocking::Opaque | Blocking::Masked { .. } => false,
+            Blocking::Transmissive { .. } | Blocking::Blended => self.uniform != Some(DVec3::ONE),
+        }
     }
 
     /// Its texture.

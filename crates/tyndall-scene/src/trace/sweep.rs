@@ -21,7 +21,7 @@
 use glam::{DVec2, DVec3, Vec3, Vec3A, Vec4};
 use tyndall::cpu::{LightSource, Occluders, Shade};
 
-use super::{Tracer, surface::Surface, texels};
+use super::{Tracer, texels};
 use crate::view::Ray;
 
 /// Surfaces closer to the ray than this share of the scene's largest coordinate don't shade it.
@@ -47,7 +47,7 @@ impl Occluders for Tracer {
             origin: origin.into(),
             direction: direction.into(),
         };
-        match Swept::new(&ray, length, light, self.tree.scale()) {
+        match Swept::new(&ray, length, light, self.scale()) {
             Swept::Plane(sweep) => self.plane_shades(&sweep, shades),
             Swept::Line(light_at) => [-1.0, 1.0]
                 .into_iter()
@@ -60,41 +60,32 @@ impl Occluders for Tracer {
 impl Tracer {
     fn plane_shades(&self, sweep: &Sweep, shades: &mut Vec<Shade>) {
         let region = sweep.region();
-        self.tree.within(
-            |center, half| region.meets(center, half),
-            |triangle| {
-                let surface = self.surface(triangle);
-                if surface.uniform == Some(DVec3::ONE) {
-                    return;
-                }
-                let Some(cut) = sweep.cut(&self.geometry.positions[triangle]) else {
-                    return;
-                };
-                match surface.uniform {
-                    Some(tint) => shades.extend(sweep.shade(&cut, [0.0, 1.0], tint)),
-                    None => self.textured_shades(sweep, &cut, triangle, surface, shades),
-                }
-            },
-        );
+        for tree in [&self.blockers, &self.glass] {
+            tree.within(
+                |center, half| region.meets(center, half),
+                |triangle| self.triangle_shades(sweep, triangle, shades),
+            );
+        }
     }
 
-    fn textured_shades(
-        &self,
-        sweep: &Sweep,
-        cut: &Cut,
-        triangle: usize,
-        surface: &Surface,
-        shades: &mut Vec<Shade>,
-    ) {
+    fn triangle_shades(&self, sweep: &Sweep, triangle: usize, shades: &mut Vec<Shade>) {
+        let Some(cut) = sweep.cut(&self.geometry.positions[triangle]) else {
+            return;
+        };
+        let surface = self.surface(triangle);
+        if let Some(tint) = surface.uniform {
+            shades.extend(sweep.shade(&cut, [0.0, 1.0], tint));
+            return;
+        }
         let uv = cut.weights.map(|weights| self.uv(triangle, weights));
         texels::pieces(surface, &self.textures, uv, |piece, tint| {
-            shades.extend(sweep.shade(cut, piece, tint));
+            shades.extend(sweep.shade(&cut, piece, tint));
         });
     }
 
     /// The light is on the ray's own line: what the ray meets shades all that is beyond it as seen from the light.
     fn line_shades(&self, walk: &LineWalk, shades: &mut Vec<Shade>) {
-        let clearance = CLEARANCE * self.tree.scale();
+        let clearance = CLEARANCE * self.scale();
         let range = [clearance, walk.span];
         let blocker = self.closest(&walk.ray, range);
         let mut glass = Vec::new();

@@ -12,8 +12,8 @@ use crate::{
     view::Ray,
 };
 
-/// Points on a view ray this close to the end of a shade may be on either side of it [m, scenes of size 2].
-/// Measured: no mismatch at all at 1e-12; grazing hits amplify rounding.
+/// Points on a view ray this close to the end of a shade may be on either side of it, relative to half the scene's size.
+/// Grazing hits amplify rounding.
 const BORDER: f64 = 1e-9;
 
 /// Rays a case; each is compared at 24 points.
@@ -41,9 +41,9 @@ fn by_shades(shades: &[Shade], s: f64) -> DVec3 {
 }
 
 /// What is left of the light at a point, by a shadow ray.
-fn by_shadow_ray(tracer: &Tracer, point: DVec3, light: LightSource) -> DVec3 {
+fn by_shadow_ray(tracer: &Tracer, point: DVec3, light: LightSource, size: f64) -> DVec3 {
     let (direction, distance) = match light {
-        LightSource::Direction(d) => (-DVec3::from(d), 100.0),
+        LightSource::Direction(d) => (-DVec3::from(d), 100.0 * size),
         LightSource::Position(p) => {
             let offset = DVec3::from(p) - point;
             (offset.normalize(), offset.length())
@@ -53,7 +53,7 @@ fn by_shadow_ray(tracer: &Tracer, point: DVec3, light: LightSource) -> DVec3 {
         origin: point,
         direction,
     };
-    let range = [1e-9, distance];
+    let range = [1e-9 * size, distance];
     if tracer.blocked(&ray, range) {
         return DVec3::ZERO;
     }
@@ -62,7 +62,9 @@ fn by_shadow_ray(tracer: &Tracer, point: DVec3, light: LightSource) -> DVec3 {
     glass.iter().map(|hit| hit.tint).product()
 }
 
-/// Shoots random rays and counts points that differ by more than `tolerance`, points compared, and dark points.
+/// Points of random rays: that differ by more than a tolerance, that were compared, that are not fully lit, and that are
+/// too close to a border to be compared.
+#[derive(Default)]
 struct Comparison {
     wrong: usize,
     compared: usize,
@@ -71,6 +73,12 @@ struct Comparison {
 }
 
 impl Comparison {
+    fn compare(&mut self, found: DVec3, expected: DVec3, tolerance: f64) {
+        self.compared += 1;
+        self.shaded += usize::from(expected != DVec3::ONE);
+        self.wrong += usize::from((found - expected).abs().max_element() > tolerance);
+    }
+
     /// At most these shares of wrong points and of points too near to a border; some points must be shaded.
     fn check(&self, case: &str, wrong: f64, at_borders: f64) {
         let compared = self.compared as f64;
@@ -79,41 +87,38 @@ impl Comparison {
             self.wrong, self.compared, self.shaded, self.at_borders
         );
         println!("{counts}");
-        assert!(self.compared > 0, "{counts}");
+        assert!(self.compared > 0 && self.shaded > 0, "{counts}");
         assert!(self.wrong as f64 <= wrong * compared, "{counts}");
         assert!(self.at_borders as f64 <= at_borders * compared, "{counts}");
     }
 }
 
-fn compare(
-    scene: &Scene,
-    rays: usize,
-    tolerance: f64,
-    light: &dyn Fn(&mut Random, &Ray) -> LightSource,
-    seed: u64,
-) -> Comparison {
+fn compare(scene: &Scene, rays: usize, tolerance: f64, light: &LightOf, seed: u64) -> Comparison {
     let tracer = Tracer::new(scene);
+    let bounds = tracer.geometry().bounds().unwrap();
+    let (center, half) = (bounds.center().as_dvec3(), 0.5 * bounds.extent().as_dvec3());
+    let size = half.max_element();
     let mut random = Random::new(seed);
-    let mut counts = Comparison {
-        wrong: 0,
-        compared: 0,
-        shaded: 0,
-        at_borders: 0,
-    };
+    let mut counts = Comparison::default();
     for _ in 0..rays {
-        let (from, to) = (2.0 * random.point(), 1.5 * random.point());
+        let (from, to) = (
+            center + 2.0 * half * random.point(),
+            center + 1.5 * half * random.point(),
+        );
         let ray = Ray {
             origin: from,
             direction: (to - from).normalize(),
         };
+        // Every second ray goes on through what it meets.
         let length = tracer
-            .closest(&ray, [0.0, 6.0])
-            .map_or(6.0, |hit| hit.distance);
-        let light = light(&mut random, &ray);
+            .closest(&ray, [0.0, 6.0 * size])
+            .filter(|_| random.unit() < 0.5)
+            .map_or(6.0 * size, |hit| hit.distance);
+        let light = light(&mut random, &ray, size);
         let shades = shades(&tracer, &ray, length, light);
         for _ in 0..24 {
             let s = length * random.unit();
-            let near_border = |x: f64| (x - s).abs() < BORDER;
+            let near_border = |x: f64| (x - s).abs() < BORDER * size;
             if shades
                 .iter()
                 .any(|shade| near_border(shade.start) || near_border(shade.end))
@@ -121,38 +126,36 @@ fn compare(
                 counts.at_borders += 1;
                 continue;
             }
-            let expected = by_shadow_ray(&tracer, ray.at(s), light);
+            let expected = by_shadow_ray(&tracer, ray.at(s), light, size);
             let found = by_shades(&shades, s);
-            counts.compared += 1;
-            counts.shaded += usize::from(expected != DVec3::ONE);
-            counts.wrong += usize::from((found - expected).abs().max_element() > tolerance);
+            counts.compare(found, expected, tolerance);
         }
     }
     counts
 }
 
-fn sun(random: &mut Random, _: &Ray) -> LightSource {
+fn sun(random: &mut Random, _: &Ray, _: f64) -> LightSource {
     LightSource::Direction(random.point().normalize().into())
 }
 
-fn lamp(random: &mut Random, _: &Ray) -> LightSource {
-    LightSource::Position((1.5 * random.point()).into())
+fn lamp(random: &mut Random, ray: &Ray, size: f64) -> LightSource {
+    LightSource::Position((ray.at(2.0 * size) + size * random.point()).into())
 }
 
 /// Almost along the ray, from before or behind.
-fn grazing_sun(random: &mut Random, ray: &Ray) -> LightSource {
+fn grazing_sun(random: &mut Random, ray: &Ray, _: f64) -> LightSource {
     let side = if random.unit() < 0.5 { -1.0 } else { 1.0 };
     let off = 10_f64.powf(-8.0 * random.unit()) * random.point();
     LightSource::Direction((side * ray.direction + off).normalize().into())
 }
 
 /// Almost on the ray's line: before it, on it or beyond it.
-fn lamp_near_ray(random: &mut Random, ray: &Ray) -> LightSource {
+fn lamp_near_ray(random: &mut Random, ray: &Ray, size: f64) -> LightSource {
     let off = 10_f64.powf(-7.0 * random.unit()) * random.point();
-    LightSource::Position((ray.at(8.0 * random.unit() - 2.0) + off).into())
+    LightSource::Position((ray.at(size * (8.0 * random.unit() - 2.0)) + size * off).into())
 }
 
-fn lamp_at_eye(random: &mut Random, ray: &Ray) -> LightSource {
+fn lamp_at_eye(random: &mut Random, ray: &Ray, _: f64) -> LightSource {
     let off = if random.unit() < 0.5 {
         DVec3::ZERO
     } else {
@@ -161,7 +164,7 @@ fn lamp_at_eye(random: &mut Random, ray: &Ray) -> LightSource {
     LightSource::Position((ray.origin + off).into())
 }
 
-fn sun_along_ray(random: &mut Random, ray: &Ray) -> LightSource {
+fn sun_along_ray(random: &mut Random, ray: &Ray, _: f64) -> LightSource {
     let side = if random.unit() < 0.5 { -1.0 } else { 1.0 };
     LightSource::Direction((side * ray.direction).into())
 }
@@ -206,7 +209,8 @@ fn opaque_scenes() -> Vec<(&'static str, Scene)> {
     ]
 }
 
-type LightOf = dyn Fn(&mut Random, &Ray) -> LightSource;
+/// Given the ray and half the scene's size.
+type LightOf = dyn Fn(&mut Random, &Ray, f64) -> LightSource;
 
 const LIGHTS: [(&str, &LightOf); 6] = [
     ("sun", &sun),
@@ -222,8 +226,8 @@ fn opaque_shades_are_those_of_shadow_rays() {
     for (name, scene) in opaque_scenes() {
         for (light_name, light) in LIGHTS {
             let found = compare(&scene, RAYS, 0.0, light, 11);
-            // At one border in 10^5 points a border comes as close as BORDER.
-            found.check(&format!("{name}, {light_name}"), 0.0, 1e-4);
+            // Measured: none wrong, none at borders.
+            found.check(&format!("{name}, {light_name}"), 0.0, 1e-3);
         }
     }
 }
@@ -283,7 +287,7 @@ fn holes_are_those_of_shadow_rays() {
         let scene = pictured(Blocking::Masked { cutoff: 0.5 }, size, wrap);
         for (name, light) in LIGHTS {
             let found = compare(&scene, RAYS, 0.0, light, 12);
-            found.check(&format!("{wrap:?}, {name}"), 0.0, 1e-4);
+            found.check(&format!("{wrap:?}, {name}"), 0.0, 1e-3);
         }
     }
 }
@@ -307,7 +311,7 @@ fn plain_glass_tints_as_along_shadow_rays() {
         for (name, light) in LIGHTS {
             // 1e-12: products in another order.
             let found = compare(&glass, RAYS, 1e-12, light, 13);
-            found.check(&format!("{blocking:?}, {name}"), 0.0, 1e-4);
+            found.check(&format!("{blocking:?}, {name}"), 0.0, 1e-3);
         }
     }
 }
@@ -337,12 +341,13 @@ fn textured_glass_is_piecewise_constant_but_right_on_average() {
                 .sum()
         };
         let found = total(&|s| by_shades(&shades, s));
-        let expected = total(&|s| by_shadow_ray(&tracer, ray.at(s), light));
+        let expected = total(&|s| by_shadow_ray(&tracer, ray.at(s), light, 1.0));
         error += (found - expected).abs().element_sum();
         mean += expected.element_sum();
     }
     let relative = error / mean;
     println!("textured glass: relative error {relative:e}");
+    // Measured: 5.1e-4.
     assert!(relative < 1e-3, "relative error {relative:e}");
 }
 
@@ -368,7 +373,7 @@ fn clear_glass_and_nothing_shade_nothing() {
                 origin: DVec3::new(0.1, -0.2, -3.0),
                 direction: DVec3::Z,
             };
-            let light = light(&mut random, &ray);
+            let light = light(&mut random, &ray, 1.0);
             assert_eq!(shades(&tracer, &ray, 6.0, light), []);
         }
     }
@@ -408,9 +413,9 @@ fn a_plate_s_shadow_has_the_length_of_similar_triangles() {
 #[test]
 fn the_surface_at_the_ray_s_end_shades_from_behind_only() {
     let tracer = Tracer::new(&opaque(&quad(
-        vec3(-9.0, 0.0, -9.0),
-        18.0 * Vec3::X,
-        18.0 * Vec3::Z,
+        vec3(-500.0, 0.0, -500.0),
+        1000.0 * Vec3::X,
+        1000.0 * Vec3::Z,
     )));
     let mut random = Random::new(16);
     for _ in 0..1000 {
@@ -448,4 +453,47 @@ fn the_surface_at_the_ray_s_end_shades_from_behind_only() {
             );
         }
     }
+}
+
+/// The same on real models, where the shared assets are present.
+#[test]
+fn models_shades_are_those_of_shadow_rays() {
+    let assets = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
+    for name in ["sibenik.glb", "hall.glb", "terrain.glb", "city.glb"] {
+        let path = assets.join(name);
+        if !path.exists() {
+            eprintln!("skipped: {} is missing", path.display());
+            continue;
+        }
+        let scene = crate::load::load(&path).unwrap();
+        for (light_name, light) in LIGHTS {
+            // Measured: none wrong, none at borders. 1e-12: products of tints in another order.
+            let found = compare(&scene, 100, 1e-12, light, 17);
+            found.check(&format!("{name}, {light_name}"), 0.0, 1e-3);
+        }
+    }
+}
+
+/// The comparison must see what is wrong: light from elsewhere, here.
+#[test]
+#[should_panic(expected = "wrong")]
+fn the_comparison_can_fail() {
+    let tracer_scene = opaque(&soup(1500, 1));
+    let tracer = Tracer::new(&tracer_scene);
+    let ray = Ray {
+        origin: DVec3::new(0.0, 0.0, -2.0),
+        direction: DVec3::Z,
+    };
+    let found = shades(&tracer, &ray, 4.0, LightSource::Direction([1.0, 0.0, 0.0]));
+    let other = LightSource::Direction([0.0, 1.0, 0.0]);
+    let mut counts = Comparison::default();
+    for i in 0..100 {
+        let s = 0.04 * f64::from(i);
+        counts.compare(
+            by_shades(&found, s),
+            by_shadow_ray(&tracer, ray.at(s), other, 1.0),
+            0.0,
+        );
+    }
+    counts.check("light from elsewhere", 0.0, 0.0);
 }

@@ -62,7 +62,7 @@ fn level(texture: &MipTexture, way: DVec2) -> usize {
 /// cells stays in one piece.
 fn for_each_cell([from, to]: [DVec2; 2], mut visit: impl FnMut([f64; 2])) {
     let way = to - from;
-    if !(way.abs().max_element() <= 2.0 * MOST_CELLS) {
+    if !way.is_finite() || way.abs().max_element() > 2.0 * MOST_CELLS {
         visit([0.0, 1.0]);
         return;
     }
