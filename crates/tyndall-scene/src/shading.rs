@@ -1,23 +1,25 @@
-//! Surfaces lit by the frame's lights: Lambert, shadow-mapped. The arithmetic is spelled out so that a shader can do the same.
+//! Surfaces lit by the frame's lights: Lambert, shadow-mapped. The arithmetic is spelled out so that a shader can do
+//! the same.
 //!
 //! Radiance towards the eye of a surface with base colour `c`, unit normal `n` and point `p`:
 //!
 //! `view_tint * (emissive + c / pi * sum over lights of (visibility * max(-n . l, 0) * full + ambient * bare))`
 //!
-//! where `l` is the way the light travels and `full` the irradiance on a surface facing it: with the spot's cone and the light's
-//! texture, and for local lights exp(-sigma_t d) / d^2 ([`LightModel::incident`]). `bare` is the same without cone and
-//! texture; times `ambient` = [`AMBIENT`] * (1 + [`AMBIENT_TILT`] * n.y) it keeps what is unlit from being quite black. Attenuation between surface and eye is left to the composite.
+//! where `l` is the way the light travels and `full` the irradiance on a surface facing it: with the spot's cone and the
+//! light's texture, and for local lights exp(-sigma_t d) / d^2 ([`LightModel::incident`]). `bare` is the same without
+//! cone and texture; times `ambient` = [`AMBIENT`] * (1 + [`AMBIENT_TILT`] * n.y) it keeps what is unlit from being
+//! quite black. Attenuation between surface and eye is left to the composite.
 //!
-//! **Visibility** compares depths at the four texels round a point, weighted bilinearly, each multiplied by the tints of the glass
-//! layers before the point. The point is `p` moved along `n` by [`NORMAL_OFFSET_TEXELS`] texels, as large as texels are at `p`:
-//! the texels are at most sqrt(2) texels away from the point; on a plane at any slope the depths there differ by no more than
-//! what an offset of sqrt(2) texels clears, and the rest is for curved surfaces. Texels outside the map are lit; a cube's are
-//! clamped to the face. A texel where nothing was drawn is lit.
+//! **Visibility** compares depths at the four texels round a point, weighted bilinearly, each multiplied by the tints of
+//! the glass layers before the point. The point is `p` moved along `n` by [`NORMAL_OFFSET_TEXELS`] texels, as large as
+//! texels are at `p`. The four texels are at most sqrt(2) texels away; on a plane of any slope an offset of as much
+//! clears the depths there, and the rest is for curved surfaces. Texels outside the map are lit; a cube's are clamped to
+//! the face. A texel where nothing was drawn is lit.
 //!
 //! **Rectangles** have no shadow map: they shine unshadowed, as [`RECT_SAMPLES`] points.
 //!
-//! **Sky**, where there is no surface: from [`SKY_HORIZON`] to [`SKY_ZENITH`] with the height of the view ray's direction,
-//! times the directional lights' illuminance. A scene without a sun has a black sky.
+//! **Sky**, where there is no surface: from [`SKY_HORIZON`] to [`SKY_ZENITH`] with the height of the view ray's
+//! direction, times the directional lights' illuminance and the view tint. A scene without a sun has a black sky.
 
 use std::f64::consts::PI;
 
@@ -47,8 +49,8 @@ pub const SKY_ZENITH: [f64; 3] = [0.018, 0.032, 0.065];
 /// Points that a rectangular light is taken as.
 pub const RECT_SAMPLES: u32 = 16;
 
-/// Radiance of what the camera sees [W/(m^2 sr)], linear RGB, row by row from the top left; without the medium between it and
-/// the eye. `lights` has one entry a light of the frame, in the same order.
+/// Radiance of what the camera sees [W/(m^2 sr)], linear RGB, row by row from the top left; without the medium between
+/// it and the eye. `lights` has one entry a light of the frame, in the same order.
 pub fn shade(g_buffer: &GBuffer, frame: &Frame, lights: &[CpuLightInputs<'_>]) -> Vec<[f32; 3]> {
     let scene_lights: Vec<SurfaceLight<'_>> = frame
         .lights

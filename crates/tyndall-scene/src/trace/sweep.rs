@@ -10,13 +10,13 @@
 //! - light that comes from direction (a, b): k = -a / b, c = 0.
 //!
 //! **Edges.** A corner on the plane counts as on its positive side, as if the plane were moved by an infinitesimal
-//! distance; a corner's side and where an edge is cut depend only on coordinates. So surfaces that are closed leave no gap
-//! between their triangles' shades, and triangles within the plane shade nothing (they have no thickness).
+//! distance; a corner's side and where an edge is cut depend only on coordinates. So surfaces that are closed leave no
+//! gap between their triangles' shades, and triangles within the plane shade nothing (they have no thickness).
 //!
-//! **Tolerances.** What is closer to the ray than [`CLEARANCE`] of the scene's size doesn't shade it: the surface that the
-//! ray lies in or starts on. A ray that ends on a surface may pass it by rounding; it is then shaded only on what is
-//! beyond. Closer to the light than the same share of the way, nothing shades either. Where the light is within
-//! [`PARALLEL`] of the ray's own line, the piece of plane has no width and the ray itself is cast through the scene.
+//! **Tolerances.** What light meets less than [`CLEARANCE`] of the scene's size before the ray doesn't shade it: the
+//! surface that the ray lies in or starts on. A ray that ends on a surface may pass it by rounding; it is then shaded
+//! only on what is beyond. Closer to a local light than the same share of the way, nothing shades either. Where the light is within [`PARALLEL`] of the ray's own line, the piece of plane has no width and the
+//! ray itself is cast through the scene.
 
 use glam::{DVec2, DVec3, Vec3, Vec3A, Vec4};
 use tyndall::cpu::{LightSource, Occluders, Shade};
@@ -24,7 +24,7 @@ use tyndall::cpu::{LightSource, Occluders, Shade};
 use super::{Tracer, texels};
 use crate::view::Ray;
 
-/// Surfaces closer to the ray than this share of the scene's largest coordinate don't shade it.
+/// Surfaces closer to the ray along the light than this share of the scene's largest coordinate don't shade it.
 const CLEARANCE: f64 = 1e-10;
 
 /// Sine of the angle between ray and light (point light: its distance from the ray's line over the longer of the ray's

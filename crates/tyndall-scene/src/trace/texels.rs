@@ -58,8 +58,8 @@ fn level(texture: &MipTexture, way: DVec2) -> usize {
         .unwrap_or(levels.len() - 1)
 }
 
-/// Cuts the line between two points where either coordinate is whole; shares of its way. A line that crosses absurdly many
-/// cells stays in one piece.
+/// Cuts the line between two points where either coordinate is whole; shares of its way. A line that crosses absurdly
+/// many cells stays in one piece.
 fn for_each_cell([from, to]: [DVec2; 2], mut visit: impl FnMut([f64; 2])) {
     let way = to - from;
     if !way.is_finite() || way.abs().max_element() > 2.0 * MOST_CELLS {
