@@ -13,9 +13,8 @@ use super::{
     mesh::{DrawClass, Meshes},
     pipeline::{ByDepth, Layouts, MeshPipeline, cleared, cleared_depth, far_depth},
     shaders,
-    shadow_map::reversed_depth,
     targets::{GLASS_FORMAT, GlassMapTarget, ShadowMapTarget},
-    view::ViewUniform,
+    view::{ViewUniform, reversed_depth},
 };
 
 /// TEMP

@@ -14,7 +14,7 @@ use super::{
     pipeline::{ByDepth, Layouts, MeshPipeline, cleared_depth},
     shaders,
     targets::ShadowMapTarget,
-    view::ViewUniform,
+    view::{ViewUniform, reversed_depth},
 };
 
 pub(super) struct ShadowMapPipelines {
@@ -85,12 +85,5 @@ impl ShadowMapPipelines {
             pass.set_pipeline(self.masked.get(reversed));
             meshes.draw(&mut pass, DrawClass::Masked, Some(materials));
         }
-    }
-}
-
-pub(super) fn reversed_depth(projection: &ShadowProjection) -> bool {
-    match *projection {
-        ShadowProjection::Single { reversed_depth, .. }
-        | ShadowProjection::Cube { reversed_depth, .. } => reversed_depth,
     }
 }
