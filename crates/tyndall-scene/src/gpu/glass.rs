@@ -16,9 +16,7 @@ use super::{
     targets::{GLASS_FORMAT, GlassMapTarget, ShadowMapTarget},
     view::{ViewUniform, reversed_depth},
 };
-
-/// TEMP
-pub const GLASS_LAYERS: u32 = 4;
+use crate::trace::GLASS_LAYERS;
 
 /// A tint of 1 as three 10-bit square roots.
 const CLEAR_TINT: u32 = (1 << 30) - 1;

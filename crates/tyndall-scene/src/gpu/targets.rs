@@ -4,7 +4,7 @@ use tyndall::frame::ShadowProjection;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
 
 use super::error::GpuSceneError;
-use super::glass::GLASS_LAYERS;
+use crate::trace::GLASS_LAYERS;
 
 pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 pub(super) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;

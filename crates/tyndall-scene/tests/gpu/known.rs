@@ -13,15 +13,15 @@ use crate::scenes::{Builder, material, wall};
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const RED: [f32; 4] = [0.8, 0.1, 0.05, 1.0];
 
-fn renderer(gpu: &TestDevice, scene: &Scene) -> SceneRenderer {
+pub(crate) fn renderer(gpu: &TestDevice, scene: &Scene) -> SceneRenderer {
     SceneRenderer::new(&gpu.device, &gpu.queue, scene, FORMAT).unwrap()
 }
 
-fn read(gpu: &TestDevice, texture: &wgpu::Texture) -> Vec<f32> {
+pub(crate) fn read(gpu: &TestDevice, texture: &wgpu::Texture) -> Vec<f32> {
     readback::texture_f32(&gpu.device, &gpu.queue, texture).unwrap()
 }
 
-fn record(gpu: &TestDevice, passes: impl FnOnce(&mut wgpu::CommandEncoder)) {
+pub(crate) fn record(gpu: &TestDevice, passes: impl FnOnce(&mut wgpu::CommandEncoder)) {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     passes(&mut encoder);
     gpu.queue.submit([encoder.finish()]);

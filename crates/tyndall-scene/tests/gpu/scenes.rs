@@ -1,7 +1,8 @@
 //! Hand-made scenes whose pictures are known.
 
-use glam::{Affine3A, Vec2, Vec3, vec2};
+use glam::{Affine3A, Quat, Vec2, Vec3, vec2};
 use tyndall_scene::scene::{Blocking, Material, Mesh, Node, Primitive, Scene, Texture, Wrap};
+use tyndall_testkit::samples::in_box;
 
 /// A scene of rectangles, each with a material of its own.
 #[derive(Default)]
@@ -52,7 +53,7 @@ impl Builder {
     }
 }
 
-pub(crate) fn node(parent_from_local: Affine3A, mesh: usize) -> Node {
+fn node(parent_from_local: Affine3A, mesh: usize) -> Node {
     Node {
         name: String::new(),
         parent: None,
@@ -78,4 +79,43 @@ pub(crate) fn wall(half: f32, z: f32) -> (Vec3, [Vec3; 2]) {
         Vec3::new(-half, half, z),
         [2.0 * half * Vec3::X, -2.0 * half * Vec3::Y],
     )
+}
+
+/// Rectangles here and there, of every kind of material, plain and textured, placed by turned, stretched and mirrored
+/// nodes, and a wall behind them all.
+pub(crate) fn clutter(rectangles: usize) -> Scene {
+    let checks = |x: u32, y: u32| {
+        let [r, g, b] = [17 * x, 17 * y, 120 + 60 * ((x / 2 + y / 2) % 2)].map(|v| v as u8);
+        [r, g, b, if (x / 4 + y / 4) % 2 == 0 { 255 } else { 40 }]
+    };
+    let kinds = [
+        Blocking::Opaque,
+        Blocking::Masked { cutoff: 0.5 },
+        Blocking::Transmissive { transmission: 0.8 },
+        Blocking::Blended,
+    ];
+    let builder = Builder::default().texture([16, 16], checks);
+    let (corner, edges) = wall(20.0, -12.0);
+    let builder = builder.rectangle(corner, edges, material([0.5; 4], Blocking::Opaque));
+    let mut scene = (0..rectangles)
+        .fold(builder, |builder, i| {
+            let material = Material {
+                base_color_texture: (i % 3 != 0).then_some(0),
+                emissive: [0.0, 0.0, i as f32],
+                ..material([0.9, 0.7, 0.8, 0.9], kinds[i % 4])
+            };
+            let (corner, edges) = wall(1.0, 0.0);
+            builder.rectangle(corner, edges, material)
+        })
+        .build();
+    // The samples begin with the box's corners.
+    let places = in_box(7, rectangles, [const { -1.0..=1.0 }; 8]).split_off(1 << 8);
+    for (i, [x, y, z, a, b, c, d, e]) in places.into_iter().enumerate() {
+        scene.nodes[i + 1].parent_from_local = Affine3A::from_scale_rotation_translation(
+            Vec3::new(1.5 + d, 1.5 + e, -1.0),
+            Quat::from_euler(glam::EulerRot::XYZ, 3.0 * a, 3.0 * b, 3.0 * c),
+            Vec3::new(5.0 * x, 4.0 * y, 6.0 * z),
+        );
+    }
+    scene
 }
