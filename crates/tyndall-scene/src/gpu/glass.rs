@@ -9,11 +9,11 @@ use wgpu::{
 };
 
 use super::{
-    material::Materials,
-    mesh::{DrawClass, Meshes},
+    mesh::DrawClass,
     pipeline::{ByDepth, Layouts, MeshPipeline, cleared, cleared_depth, far_depth},
     shaders,
     targets::{GLASS_FORMAT, GlassMapTarget, ShadowMapTarget},
+    uploaded::UploadedScene,
     view::{ViewUniform, reversed_depth},
 };
 use crate::trace::GLASS_LAYERS;
@@ -59,10 +59,8 @@ impl GlassPipelines {
 
     pub(super) fn record(
         &self,
-        device: &Device,
+        scene: &UploadedScene,
         encoder: &mut CommandEncoder,
-        layouts: &Layouts,
-        (meshes, materials): (&Meshes, &Materials),
         (target, shadow_map): (&GlassMapTarget, &ShadowMapTarget),
         (emitter, projection): (&Emitter, &ShadowProjection),
         mut timer: Option<&mut PassTimer>,
@@ -85,11 +83,11 @@ impl GlassPipelines {
         );
         let faces = target.layers.chunks_exact(GLASS_LAYERS as usize);
         for ((view, opaque), layers) in views.iter().zip(&shadow_map.faces).zip(faces) {
-            let view = layouts.view_bind_group(device, view);
+            let view = scene.view_bind_group(view);
             for (index, layer) in layers.iter().enumerate() {
                 // The first layer ignores the one before it, but something must be bound.
                 let before = &layers[index.checked_sub(1).unwrap_or(layers.len() - 1)];
-                let group = self.bind_group(device, opaque, before);
+                let group = self.bind_group(&scene.device, opaque, before);
                 let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("glass"),
                     color_attachments: &[cleared(layer, empty)],
@@ -109,7 +107,7 @@ impl GlassPipelines {
                 pass.set_pipeline(pipeline.get(reversed));
                 pass.set_bind_group(0, &view, &[]);
                 pass.set_bind_group(2, &group, &[]);
-                meshes.draw(&mut pass, DrawClass::Translucent, Some(materials));
+                scene.draw(&mut pass, DrawClass::Translucent);
             }
         }
     }

@@ -202,6 +202,36 @@ impl GlassMapTarget {
     }
 }
 
+/// What is bound where a light has no such picture; nothing reads it.
+pub(super) struct Absent {
+    pub(super) shadow_map: TextureView,
+    pub(super) glass: TextureView,
+    pub(super) picture: TextureView,
+}
+
+impl Absent {
+    pub(super) fn new(device: &Device) -> Self {
+        let texture = |format| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("absent"),
+                size: wgpu::Extent3d::default(),
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+        };
+        Self {
+            shadow_map: array_view(&texture(DEPTH_FORMAT)),
+            glass: array_view(&texture(GLASS_FORMAT)),
+            picture: texture(TextureFormat::Rgba8Unorm)
+                .create_view(&wgpu::TextureViewDescriptor::default()),
+        }
+    }
+}
+
 fn face_count(projection: &ShadowProjection) -> u32 {
     match projection {
         ShadowProjection::Single { .. } => 1,

@@ -10,7 +10,7 @@ use tyndall_testkit::device::{TestDevice, device_or_skip};
 
 use crate::scenes::{Builder, material, wall};
 
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const RED: [f32; 4] = [0.8, 0.1, 0.05, 1.0];
 
 pub(crate) fn renderer(gpu: &TestDevice, scene: &Scene) -> SceneRenderer {
