@@ -80,7 +80,7 @@ fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
 
-fn sun_illuminance(light: &Light) -> DVec3 {
+pub(crate) fn sun_illuminance(light: &Light) -> DVec3 {
     match light.emitter {
         Emitter::Directional { illuminance, .. } => vector(illuminance),
         _ => DVec3::ZERO,

@@ -7,13 +7,13 @@ use wgpu::{
 };
 
 use super::{
-    material::Materials,
-    mesh::{DrawClass, Meshes},
+    mesh::DrawClass,
     pipeline::{ByDepth, Layouts, MeshPipeline, cleared, cleared_depth},
     shaders,
     targets::{
         BASE_COLOR_FORMAT, EMISSIVE_FORMAT, GBufferTargets, NORMAL_FORMAT, VIEW_TINT_FORMAT,
     },
+    uploaded::UploadedScene,
     view::ViewUniform,
 };
 
@@ -82,16 +82,14 @@ impl GBufferPipelines {
 
     pub(super) fn record(
         &self,
-        device: &Device,
+        scene: &UploadedScene,
         encoder: &mut CommandEncoder,
-        layouts: &Layouts,
-        (meshes, materials): (&Meshes, &Materials),
         targets: &GBufferTargets,
         camera: &Camera,
         mut timer: Option<&mut PassTimer>,
     ) {
         let reversed = camera.reversed_depth;
-        let view = layouts.view_bind_group(device, &ViewUniform::of_camera(camera));
+        let view = scene.view_bind_group(&ViewUniform::of_camera(camera));
 
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("g-buffer"),
@@ -107,9 +105,9 @@ impl GBufferPipelines {
         });
         pass.set_bind_group(0, &view, &[]);
         pass.set_pipeline(self.opaque.get(reversed));
-        meshes.draw(&mut pass, DrawClass::Opaque, Some(materials));
+        scene.draw(&mut pass, DrawClass::Opaque);
         pass.set_pipeline(self.masked.get(reversed));
-        meshes.draw(&mut pass, DrawClass::Masked, Some(materials));
+        scene.draw(&mut pass, DrawClass::Masked);
         drop(pass);
 
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -125,6 +123,6 @@ impl GBufferPipelines {
         });
         pass.set_bind_group(0, &view, &[]);
         pass.set_pipeline(self.view_tint.get(reversed));
-        meshes.draw(&mut pass, DrawClass::Translucent, Some(materials));
+        scene.draw(&mut pass, DrawClass::Translucent);
     }
 }

@@ -9,17 +9,14 @@ use wgpu::{
 };
 
 use super::{
-    material::Materials,
-    mesh::{DrawClass, Meshes},
+    mesh::DrawClass,
     pipeline::{ByDepth, Layouts, MeshPipeline, cleared, cleared_depth, far_depth},
     shaders,
-    shadow_map::reversed_depth,
     targets::{GLASS_FORMAT, GlassMapTarget, ShadowMapTarget},
-    view::ViewUniform,
+    uploaded::UploadedScene,
+    view::{ViewUniform, reversed_depth},
 };
-
-/// TEMP
-pub const GLASS_LAYERS: u32 = 4;
+use crate::trace::GLASS_LAYERS;
 
 /// A tint of 1 as three 10-bit square roots.
 const CLEAR_TINT: u32 = (1 << 30) - 1;
@@ -62,10 +59,8 @@ impl GlassPipelines {
 
     pub(super) fn record(
         &self,
-        device: &Device,
+        scene: &UploadedScene,
         encoder: &mut CommandEncoder,
-        layouts: &Layouts,
-        (meshes, materials): (&Meshes, &Materials),
         (target, shadow_map): (&GlassMapTarget, &ShadowMapTarget),
         (emitter, projection): (&Emitter, &ShadowProjection),
         mut timer: Option<&mut PassTimer>,
@@ -88,11 +83,11 @@ impl GlassPipelines {
         );
         let faces = target.layers.chunks_exact(GLASS_LAYERS as usize);
         for ((view, opaque), layers) in views.iter().zip(&shadow_map.faces).zip(faces) {
-            let view = layouts.view_bind_group(device, view);
+            let view = scene.view_bind_group(view);
             for (index, layer) in layers.iter().enumerate() {
                 // The first layer ignores the one before it, but something must be bound.
                 let before = &layers[index.checked_sub(1).unwrap_or(layers.len() - 1)];
-                let group = self.bind_group(device, opaque, before);
+                let group = self.bind_group(&scene.device, opaque, before);
                 let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("glass"),
                     color_attachments: &[cleared(layer, empty)],
@@ -112,7 +107,7 @@ impl GlassPipelines {
                 pass.set_pipeline(pipeline.get(reversed));
                 pass.set_bind_group(0, &view, &[]);
                 pass.set_bind_group(2, &group, &[]);
-                meshes.draw(&mut pass, DrawClass::Translucent, Some(materials));
+                scene.draw(&mut pass, DrawClass::Translucent);
             }
         }
     }

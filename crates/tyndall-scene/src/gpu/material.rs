@@ -5,7 +5,7 @@ use half::f16;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroup, BindGroupLayout, Device, Queue, TextureView};
 
-use super::{error::GpuSceneError, texture};
+use super::{error::GpuSceneError, pipeline::uniform_entry, texture};
 use crate::scene::{Blocking, Material, Scene, Texture, Wrap};
 
 /// `Material` of `material.wgsl`.
@@ -78,23 +78,17 @@ impl Materials {
 
     /// Group 1 of the pipelines that read materials.
     pub(super) fn layout(device: &Device) -> BindGroupLayout {
+        let visibility = wgpu::ShaderStages::FRAGMENT;
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
+            visibility,
             ty,
             count: None,
         };
         device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("material"),
             entries: &[
-                entry(
-                    0,
-                    wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
-                        has_dynamic_offset: false,
-                        min_binding_size: None,
-                    },
-                ),
+                uniform_entry(visibility),
                 entry(
                     1,
                     wgpu::BindingType::Texture {

@@ -8,7 +8,10 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{Buffer, BufferUsages, Device, Queue, RenderPass};
 
 use super::{error::GpuSceneError, material::Materials};
-use crate::scene::{Blocking, Primitive, Scene};
+use crate::{
+    geometry::world_from_nodes,
+    scene::{Blocking, Primitive, Scene},
+};
 
 /// A vertex in mesh space.
 #[repr(C)]
@@ -328,17 +331,6 @@ fn instance_data(scene: &Scene, nodes: &[usize]) -> Vec<Instance> {
         .iter()
         .map(|&node| Instance::new(&world_from_node[node]))
         .collect()
-}
-
-fn world_from_nodes(scene: &Scene) -> Vec<Affine3A> {
-    let mut world_from_node: Vec<Affine3A> = Vec::with_capacity(scene.nodes.len());
-    for node in &scene.nodes {
-        let parent = node
-            .parent
-            .map_or(Affine3A::IDENTITY, |p| world_from_node[p]);
-        world_from_node.push(parent * node.parent_from_local);
-    }
-    world_from_node
 }
 
 #[cfg(test)]

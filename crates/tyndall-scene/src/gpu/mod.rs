@@ -15,10 +15,13 @@ mod mesh;
 mod pipeline;
 pub mod readback;
 mod renderer;
+mod shade;
 mod shaders;
 mod shadow_map;
 mod targets;
 mod texture;
+mod uniforms;
+mod uploaded;
 mod view;
 
 pub use device::{NoAdapter, connect};

@@ -19,16 +19,7 @@ impl Layouts {
         Self {
             view: device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("view"),
-                entries: &[wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
-                        has_dynamic_offset: false,
-                        min_binding_size: None,
-                    },
-                    count: None,
-                }],
+                entries: &[uniform_entry(wgpu::ShaderStages::VERTEX_FRAGMENT)],
             }),
             material: Materials::layout(device),
         }
@@ -59,6 +50,20 @@ impl Layouts {
                 resource: buffer.as_entire_binding(),
             }],
         })
+    }
+}
+
+/// A uniform buffer at binding 0.
+pub(super) fn uniform_entry(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
     }
 }
 

@@ -1,33 +1,33 @@
 //! The uploaded scene with its pipelines.
 
 use tyndall::{
-    frame::{Camera, Emitter, ShadowProjection},
+    LightInputs,
+    frame::{Camera, Emitter, Frame, ShadowProjection},
     gpu::PassTimer,
 };
-use wgpu::{CommandEncoder, Device, Queue, TextureFormat};
+use wgpu::{CommandEncoder, Device, Queue, TextureFormat, TextureView};
 
 use super::{
     error::GpuSceneError,
     g_buffer::GBufferPipelines,
     glass::GlassPipelines,
-    material::{Materials, has_tinted_glass},
-    mesh::{DrawClass, Meshes},
-    pipeline::Layouts,
+    material::has_tinted_glass,
+    mesh::DrawClass,
+    shade::ShadePipelines,
     shadow_map::ShadowMapPipelines,
     targets::{GBufferTargets, GlassMapTarget, ShadowMapTarget},
+    uploaded::UploadedScene,
 };
 use crate::scene::Scene;
 
 /// A scene on a device, with everything that draws it.
 pub struct SceneRenderer {
-    device: Device,
-    meshes: Meshes,
-    materials: Materials,
+    scene: UploadedScene,
     has_tinted_glass: bool,
-    layouts: Layouts,
     g_buffer: GBufferPipelines,
     shadow_map: ShadowMapPipelines,
     glass: GlassPipelines,
+    shade: ShadePipelines,
 }
 
 impl SceneRenderer {
@@ -41,28 +41,28 @@ impl SceneRenderer {
         scene: &Scene,
         target_format: TextureFormat,
     ) -> Result<Self, GpuSceneError> {
-        let layouts = Layouts::new(device);
+        let uploaded = UploadedScene::new(device, queue, scene)?;
+        let layouts = &uploaded.layouts;
         Ok(Self {
-            meshes: Meshes::new(device, scene)?,
-            materials: Materials::new(device, queue, scene, &layouts.material)?,
-            has_tinted_glass: has_tinted_glass(scene),
-            g_buffer: GBufferPipelines::new(device, &layouts),
-            shadow_map: ShadowMapPipelines::new(device, &layouts),
-            glass: GlassPipelines::new(device, &layouts),
-            layouts,
-            device: device.clone(),
+            has_tinted_glass: uploaded.meshes.has(DrawClass::Translucent)
+                && has_tinted_glass(scene),
+            g_buffer: GBufferPipelines::new(device, layouts),
+            shadow_map: ShadowMapPipelines::new(device, layouts),
+            glass: GlassPipelines::new(device, layouts),
+            shade: ShadePipelines::new(device, target_format)?,
+            scene: uploaded,
         })
     }
 
     /// Moves the nodes to where they are in `scene`, which differs from the uploaded one in the nodes' places alone.
     /// Holds for what is submitted from now on.
     pub fn place(&self, queue: &Queue, scene: &Scene) {
-        self.meshes.place(queue, scene);
+        self.scene.meshes.place(queue, scene);
     }
 
     /// Whether light through the scene's glass and blended surfaces changes its colour, so that lights need glass maps.
     pub fn has_tinted_glass(&self) -> bool {
-        self.has_tinted_glass && self.meshes.has(DrawClass::Translucent)
+        self.has_tinted_glass
     }
 
     /// Records what `camera` sees. Its depth is in the camera's convention, its pixels are those of `targets`.
@@ -73,15 +73,8 @@ impl SceneRenderer {
         camera: &Camera,
         timer: Option<&mut PassTimer>,
     ) {
-        self.g_buffer.record(
-            &self.device,
-            encoder,
-            &self.layouts,
-            (&self.meshes, &self.materials),
-            targets,
-            camera,
-            timer,
-        );
+        self.g_buffer
+            .record(&self.scene, encoder, targets, camera, timer);
     }
 
     /// Records the light's shadow map: alpha-tested where surfaces are masked, both sides of all of them, without bias.
@@ -96,15 +89,8 @@ impl SceneRenderer {
         projection: &ShadowProjection,
         timer: Option<&mut PassTimer>,
     ) {
-        self.shadow_map.record(
-            &self.device,
-            encoder,
-            &self.layouts,
-            (&self.meshes, &self.materials),
-            target,
-            (emitter, projection),
-            timer,
-        );
+        self.shadow_map
+            .record(&self.scene, encoder, target, (emitter, projection), timer);
     }
 
     /// Records the coloured glass before the first opaque surface, seen from the light;
@@ -122,12 +108,35 @@ impl SceneRenderer {
         timer: Option<&mut PassTimer>,
     ) {
         self.glass.record(
-            &self.device,
+            &self.scene,
             encoder,
-            &self.layouts,
-            (&self.meshes, &self.materials),
             (target, shadow_map),
             (emitter, projection),
+            timer,
+        );
+    }
+
+    /// Records the radiance of what the camera sees [W/(m^2 sr)] on `target`, which has the format given to
+    /// [`SceneRenderer::new`] and the size of `g_buffer`; what was there is lost. It is [`crate::shading::shade`] on the GPU:
+    /// Lambert surfaces under the frame's lights, or the sky, without the medium between them and the eye.
+    ///
+    /// `g_buffer` was recorded with the frame's camera; `lights` has one entry a light of the frame, in the same order.
+    /// A light without a shadow map, glass or texture is unshadowed, untinted or white.
+    pub fn shade(
+        &self,
+        encoder: &mut CommandEncoder,
+        target: &TextureView,
+        g_buffer: &GBufferTargets,
+        frame: &Frame,
+        lights: &[LightInputs<'_>],
+        timer: Option<&mut PassTimer>,
+    ) {
+        self.shade.record(
+            &self.scene.device,
+            encoder,
+            target,
+            g_buffer,
+            (frame, lights),
             timer,
         );
     }

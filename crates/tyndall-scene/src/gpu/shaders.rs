@@ -29,6 +29,22 @@ pub(super) const GLASS: Shader = Shader {
     files: &[VIEW, MESH, MATERIAL, include_str!("wgsl/glass.wgsl")],
 };
 
+const SHADE_VIEW: &str = include_str!("wgsl/shade_view.wgsl");
+
+pub(super) const SHADE_BASE: Shader = Shader {
+    name: "surfaces: sky and emission",
+    files: &[SHADE_VIEW, include_str!("wgsl/shade_base.wgsl")],
+};
+pub(super) const SHADE_LIGHT: Shader = Shader {
+    name: "surfaces: a light",
+    files: &[
+        SHADE_VIEW,
+        include_str!("wgsl/shade_light.wgsl"),
+        include_str!("wgsl/shade_shadow.wgsl"),
+        include_str!("wgsl/shade.wgsl"),
+    ],
+};
+
 impl Shader {
     pub(super) fn source(&self) -> String {
         self.files.join("\n")

@@ -9,12 +9,12 @@ use tyndall::{
 use wgpu::{CommandEncoder, Device, RenderPipeline};
 
 use super::{
-    material::Materials,
-    mesh::{DrawClass, Meshes},
+    mesh::DrawClass,
     pipeline::{ByDepth, Layouts, MeshPipeline, cleared_depth},
     shaders,
     targets::ShadowMapTarget,
-    view::ViewUniform,
+    uploaded::UploadedScene,
+    view::{ViewUniform, reversed_depth},
 };
 
 pub(super) struct ShadowMapPipelines {
@@ -54,10 +54,8 @@ impl ShadowMapPipelines {
 
     pub(super) fn record(
         &self,
-        device: &Device,
+        scene: &UploadedScene,
         encoder: &mut CommandEncoder,
-        layouts: &Layouts,
-        (meshes, materials): (&Meshes, &Materials),
         target: &ShadowMapTarget,
         (emitter, projection): (&Emitter, &ShadowProjection),
         mut timer: Option<&mut PassTimer>,
@@ -70,7 +68,7 @@ impl ShadowMapPipelines {
             "a shadow map's target must have the faces of its projection"
         );
         for (view, face) in views.iter().zip(&target.faces) {
-            let view = layouts.view_bind_group(device, view);
+            let view = scene.view_bind_group(view);
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("shadow map"),
                 depth_stencil_attachment: Some(cleared_depth(face, reversed, wgpu::StoreOp::Store)),
@@ -81,16 +79,9 @@ impl ShadowMapPipelines {
             });
             pass.set_bind_group(0, &view, &[]);
             pass.set_pipeline(self.opaque.get(reversed));
-            meshes.draw(&mut pass, DrawClass::Opaque, None);
+            scene.draw_plain(&mut pass, DrawClass::Opaque);
             pass.set_pipeline(self.masked.get(reversed));
-            meshes.draw(&mut pass, DrawClass::Masked, Some(materials));
+            scene.draw(&mut pass, DrawClass::Masked);
         }
-    }
-}
-
-pub(super) fn reversed_depth(projection: &ShadowProjection) -> bool {
-    match *projection {
-        ShadowProjection::Single { reversed_depth, .. }
-        | ShadowProjection::Cube { reversed_depth, .. } => reversed_depth,
     }
 }

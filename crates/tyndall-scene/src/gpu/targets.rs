@@ -4,7 +4,7 @@ use tyndall::frame::ShadowProjection;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
 
 use super::error::GpuSceneError;
-use super::glass::GLASS_LAYERS;
+use crate::trace::GLASS_LAYERS;
 
 pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 pub(super) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
@@ -199,6 +199,36 @@ impl GlassMapTarget {
     /// Bytes of the textures.
     pub fn bytes(&self) -> u64 {
         texture_bytes(&self.texture) + texture_bytes(&self.depth.texture)
+    }
+}
+
+/// What is bound where a light has no such picture; nothing reads it.
+pub(super) struct Absent {
+    pub(super) shadow_map: TextureView,
+    pub(super) glass: TextureView,
+    pub(super) picture: TextureView,
+}
+
+impl Absent {
+    pub(super) fn new(device: &Device) -> Self {
+        let texture = |format| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("absent"),
+                size: wgpu::Extent3d::default(),
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+        };
+        Self {
+            shadow_map: array_view(&texture(DEPTH_FORMAT)),
+            glass: array_view(&texture(GLASS_FORMAT)),
+            picture: texture(TextureFormat::Rgba8Unorm)
+                .create_view(&wgpu::TextureViewDescriptor::default()),
+        }
     }
 }
 

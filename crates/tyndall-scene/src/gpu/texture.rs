@@ -6,7 +6,10 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 use wgpu::{Device, Features, Queue, TextureFormat, TextureUsages, TextureView};
 
 use super::{error::GpuSceneError, targets::check_size};
-use crate::scene::Texture;
+use crate::{
+    scene::{Texture, Wrap},
+    texture::MipTexture,
+};
 
 /// Uploads a base-colour texture with all its mip levels.
 pub(super) fn upload(
@@ -18,28 +21,31 @@ pub(super) fn upload(
     let what = format!("texture {index}");
     check_size(device, &what, texture.size)?;
     check_count(&what, texture.size, texture.texels.len())?;
-    let levels = mip_levels(texture);
-    Ok(create(device, queue, &what, texture.size, &levels))
+    Ok(create(device, queue, &what, &MipTexture::new(texture)))
 }
 
 /// What a material without a texture samples.
 pub(super) fn upload_white(device: &Device, queue: &Queue) -> TextureView {
-    create(device, queue, "white", [1, 1], &[vec![[255; 4]]])
+    let white = MipTexture::new(&Texture {
+        size: [1, 1],
+        texels: vec![[255; 4]],
+        wrap: [Wrap::ClampToEdge; 2],
+    });
+    create(device, queue, "white", &white)
 }
 
-fn create(
-    device: &Device,
-    queue: &Queue,
-    label: &str,
-    size: [u32; 2],
-    levels: &[Vec<[u8; 4]>],
-) -> TextureView {
+fn create(device: &Device, queue: &Queue, label: &str, mips: &MipTexture) -> TextureView {
+    let texels: Vec<[u8; 4]> = mips
+        .levels()
+        .iter()
+        .flat_map(|level| level.texels.iter().copied())
+        .collect();
     let texture = device.create_texture_with_data(
         queue,
         &wgpu::TextureDescriptor {
             label: Some(label),
-            size: extent(size),
-            mip_level_count: levels.len() as u32,
+            size: extent(mips.levels()[0].size),
+            mip_level_count: mips.levels().len() as u32,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: TextureFormat::Rgba8UnormSrgb,
@@ -47,74 +53,9 @@ fn create(
             view_formats: &[],
         },
         TextureDataOrder::LayerMajor,
-        levels.concat().as_flattened(),
+        texels.as_flattened(),
     );
     texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-/// All levels of a picture, sRGB-encoded as the picture itself; each is the box-filtered one before it, in linear light.
-fn mip_levels(texture: &Texture) -> Vec<Vec<[u8; 4]>> {
-    let linear: [f32; 256] = std::array::from_fn(|code| linear_from_srgb(code as f32 / 255.0));
-    let decode = |&[r, g, b, a]: &[u8; 4]| {
-        let [r, g, b] = [r, g, b].map(|code| linear[usize::from(code)]);
-        [r, g, b, f32::from(a) / 255.0]
-    };
-    let encode = |&[r, g, b, a]: &[f32; 4]| {
-        let [r, g, b] = [r, g, b].map(srgb_from_linear);
-        [r, g, b, a].map(|value| (value * 255.0).round() as u8)
-    };
-    let mut levels = vec![texture.texels.clone()];
-    let mut size = texture.size;
-    let mut texels: Vec<[f32; 4]> = texture.texels.iter().map(decode).collect();
-    while size != [1, 1] {
-        (size, texels) = halve(size, &texels);
-        levels.push(texels.iter().map(encode).collect());
-    }
-    levels
-}
-
-/// The next mip level: each texel is the mean of those it covers (2 x 2; up to 3 a side where a side is odd).
-fn halve(size: [u32; 2], texels: &[[f32; 4]]) -> ([u32; 2], Vec<[f32; 4]>) {
-    let half = size.map(|side| (side / 2).max(1));
-    let covered = |axis: usize, i: u32| {
-        let scale = |i: u32| (u64::from(i) * u64::from(size[axis]) / u64::from(half[axis])) as u32;
-        scale(i)..scale(i + 1)
-    };
-    let mean = |x: u32, y: u32| {
-        let mut sum = [0.0; 4];
-        let mut count = 0.0;
-        for row in covered(1, y) {
-            for column in covered(0, x) {
-                let texel = texels[(row * size[0] + column) as usize];
-                sum = std::array::from_fn(|c| sum[c] + texel[c]);
-                count += 1.0;
-            }
-        }
-        sum.map(|s| s / count)
-    };
-    let next = (0..half[1])
-        .flat_map(|y| (0..half[0]).map(move |x| (x, y)))
-        .map(|(x, y)| mean(x, y))
-        .collect();
-    (half, next)
-}
-
-/// IEC 61966-2-1.
-fn linear_from_srgb(value: f32) -> f32 {
-    if value <= 0.04045 {
-        value / 12.92
-    } else {
-        ((value + 0.055) / 1.055).powf(2.4)
-    }
-}
-
-/// IEC 61966-2-1.
-fn srgb_from_linear(value: f32) -> f32 {
-    if value <= 0.003_130_8 {
-        12.92 * value
-    } else {
-        1.055 * value.powf(1.0 / 2.4) - 0.055
-    }
 }
 
 /// Uploads a light's texture: linear RGB, one level, in the most precise format that the device can filter

@@ -4,8 +4,12 @@
 //! in a world of many kilometres; matrices are put together in f64.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat4, DVec3, DVec4, Vec3};
-use tyndall::frame::{Camera, Emitter, Projection, ShadowProjection};
+use glam::{DMat3, DMat4, DVec3, DVec4, Vec3};
+use tyndall::{
+    camera::CameraRays,
+    frame::{Camera, Emitter, Projection, ShadowProjection},
+    shadow::faces,
+};
 
 /// `View` of `view.wgsl`.
 #[repr(C)]
@@ -23,78 +27,66 @@ pub(super) struct ViewUniform {
 impl ViewUniform {
     /// What a camera sees.
     pub(super) fn of_camera(camera: &Camera) -> Self {
-        let forward = DVec3::from(camera.forward.map(f64::from)).normalize_or_zero();
+        // The basis is the same whatever the picture's size.
+        let rays = CameraRays::new(camera, [1, 1]);
         let viewer = match camera.projection {
             Projection::Perspective { .. } => DVec4::W,
-            Projection::Orthographic { .. } => (-forward).extend(0.0),
+            Projection::Orthographic { .. } => (-rays.forward).extend(0.0),
         };
-        Self {
-            clip_from_relative: clip_from_relative(camera).as_mat4().to_cols_array_2d(),
-            origin: camera.eye,
-            _pad: 0.0,
-            viewer: viewer.as_vec4().to_array(),
-        }
+        let view_from_relative = DMat3::from_cols(rays.right, rays.up, rays.forward).transpose();
+        let clip_from_view = clip_from_view(&camera.projection, camera.reversed_depth);
+        Self::new(
+            clip_from_view * DMat4::from_mat3(view_from_relative),
+            camera.eye.into(),
+            viewer,
+        )
     }
 
-    /// What a light sees: one view a face of its shadow map.
+    /// What a light sees: one view a face of its shadow map. None where a cube is given to a light without a position.
     pub(super) fn of_light(emitter: &Emitter, projection: &ShadowProjection) -> Vec<Self> {
-        match *projection {
-            ShadowProjection::Single {
-                clip_from_world, ..
-            } => {
-                let clip_from_world =
-                    DMat4::from_cols_array_2d(&clip_from_world.map(|c| c.map(f64::from)));
+        let reversed = reversed_depth(projection);
+        faces(emitter, projection)
+            .unwrap_or_default()
+            .iter()
+            .map(|face| {
+                let clip_from_world = if reversed {
+                    face.clip_from_world
+                } else {
+                    FLIP_DEPTH * face.clip_from_world
+                };
                 let origin = light_origin(emitter, clip_from_world);
                 let clip_from_relative =
                     clip_from_world * DMat4::from_translation(origin.as_dvec3());
-                vec![Self::of_matrix(clip_from_relative, origin)]
-            }
-            ShadowProjection::Cube {
-                near,
-                far,
-                reversed_depth,
-            } => {
-                let origin = light_origin(emitter, DMat4::IDENTITY);
-                let projection = clip_from_view(
-                    &Projection::Perspective {
-                        half_extent: [1.0; 2],
-                        center: [0.0; 2],
-                        near,
-                        far,
-                    },
-                    reversed_depth,
-                );
-                CUBE_FACES
-                    .iter()
-                    .map(|face| {
-                        let [right, up, forward] = face.map(DVec3::from);
-                        Self::of_matrix(projection * view_from_relative(right, up, forward), origin)
-                    })
-                    .collect()
-            }
-        }
+                Self::new(clip_from_relative, origin, DVec4::W)
+            })
+            .collect()
     }
 
-    fn of_matrix(clip_from_relative: DMat4, origin: Vec3) -> Self {
+    fn new(clip_from_relative: DMat4, origin: Vec3, viewer: DVec4) -> Self {
         Self {
             clip_from_relative: clip_from_relative.as_mat4().to_cols_array_2d(),
             origin: origin.to_array(),
             _pad: 0.0,
-            viewer: [0.0, 0.0, 0.0, 1.0],
+            viewer: viewer.as_vec4().to_array(),
         }
     }
 }
 
-/// Right, up and forward of the faces +X, -X, +Y, -Y, +Z, -Z as WebGPU and Direct3D lay them out.
-/// The bases are left-handed: a cube map is seen from within.
-const CUBE_FACES: [[[f64; 3]; 3]; 6] = [
-    [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
-    [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]],
-    [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
-    [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]],
-    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]],
-];
+/// Turns depth that is 1 at the near plane into depth that is 0 there: z to w - z.
+const FLIP_DEPTH: DMat4 = DMat4::from_cols(
+    DVec4::X,
+    DVec4::Y,
+    DVec4::NEG_Z,
+    DVec4::new(0.0, 0.0, 1.0, 1.0),
+);
+
+/// Whether a shadow map holds 1 at its near plane.
+pub(super) fn reversed_depth(projection: &ShadowProjection) -> bool {
+    match *projection {
+        ShadowProjection::Single { reversed_depth, .. }
+        | ShadowProjection::Cube { reversed_depth, .. } => reversed_depth,
+    }
+}
 
 /// A point near what the light's map shows: the light itself, or, of a sun, the middle of the map.
 fn light_origin(emitter: &Emitter, clip_from_world: DMat4) -> Vec3 {
@@ -106,32 +98,6 @@ fn light_origin(emitter: &Emitter, clip_from_world: DMat4) -> Vec3 {
             .project_point3(DVec3::new(0.0, 0.0, 0.5))
             .as_vec3(),
     }
-}
-
-/// The camera's clip space from world-space offsets from its eye.
-pub(super) fn clip_from_relative(camera: &Camera) -> DMat4 {
-    let [right, up, forward] = basis(camera);
-    clip_from_view(&camera.projection, camera.reversed_depth)
-        * view_from_relative(right, up, forward)
-}
-
-/// The camera's unit right, up and forward in world space.
-pub(super) fn basis(camera: &Camera) -> [DVec3; 3] {
-    let forward = DVec3::from(camera.forward.map(f64::from)).normalize_or_zero();
-    let up = DVec3::from(camera.up.map(f64::from));
-    let right = forward.cross(up).normalize_or_zero();
-    [right, right.cross(forward), forward]
-}
-
-/// View space here is x right, y up, z forward: depth is z itself.
-fn view_from_relative(right: DVec3, up: DVec3, forward: DVec3) -> DMat4 {
-    DMat4::from_cols(
-        right.extend(0.0),
-        up.extend(0.0),
-        forward.extend(0.0),
-        DVec4::W,
-    )
-    .transpose()
 }
 
 /// Clip space from a view space whose z is depth.

@@ -9,7 +9,7 @@ override GLASS_FIRST_LAYER: bool;
 @group(2) @binding(1) var glass_layer_before: texture_2d<u32>;
 
 fn glass_is_nearer(depth: f32, than: f32) -> bool {
-    return select(depth < than, depth > than, GLASS_REVERSED_DEPTH);
+    return select((depth < than), (depth > than), GLASS_REVERSED_DEPTH);
 }
 
 // Three 10-bit square roots, red lowest.

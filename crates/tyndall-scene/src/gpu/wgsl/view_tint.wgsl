@@ -2,5 +2,5 @@
 
 @fragment
 fn view_tint_fragment(fragment: MeshFragment) -> @location(0) vec4f {
-    return vec4f(material_tint(material_base_color(fragment.uv)), 1.0);
+    return vec4f(material_tint(material_finest_base_color(fragment.uv)), 1.0);
 }
