@@ -160,7 +160,6 @@ impl Shot {
         section.only(&KEYS)?;
         let folder = folder(file);
         let scene = "a path or builtin:NAME";
-        let technique = section.get("technique");
         Ok(Self {
             file: file.to_owned(),
             scene: SceneSource::new(section.require("scene", scene)?.text(scene)?, folder),
@@ -181,7 +180,7 @@ impl Shot {
                 .get("medium")
                 .map(|field| medium::read(&field))
                 .transpose()?,
-            technique: technique::read(technique.as_ref(), &section)?,
+            technique: technique::read(section.get("technique").as_ref())?,
             temporal: section
                 .get("temporal")
                 .map(|field| animation::read_temporal(&field))
