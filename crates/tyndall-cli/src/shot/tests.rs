@@ -622,7 +622,7 @@ fn every_kind_of_light_and_medium_survives_being_written_as_a_shot() {
 fn resolve(shot: &Shot, base: Camera) -> Result<Camera, String> {
     let scene = SceneCameras {
         named: &[("main".to_owned(), base)],
-        framed: &|| base,
+        framed: Some(base),
         farthest: &|_| 80.0,
     };
     shot.camera.resolve(&scene, 2.0).map_err(|e| e.to_string())
