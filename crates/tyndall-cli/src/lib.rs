@@ -1,6 +1,15 @@
-//! What the `tyndall` command is made of.
+//! What the `tyndall` command is made of: shots are read ([`shot`]), loaded ([`setup`]), rendered ([`render`]),
+//! and written ([`output`]) as they are or as a picture for people ([`picture`]).
 
+pub mod args;
+pub mod commands;
+pub mod failure;
 pub mod layer;
+pub mod light_texture;
 pub mod output;
 pub mod picture;
+pub mod progress;
+pub mod render;
+pub mod setup;
 pub mod shot;
+pub mod stats;

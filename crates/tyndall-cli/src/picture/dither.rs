@@ -4,13 +4,17 @@
 /// Warfare"): every 3 x 3 neighbourhood holds nearly all values, so the eye averages it away.
 fn interleaved_gradient_noise([x, y]: [u32; 2]) -> f32 {
     let phase = 0.067_110_56 * f64::from(x) + 0.005_837_15 * f64::from(y);
-    ((52.982_918_9 * phase.fract()).fract() as f32).min(1.0 - f32::EPSILON)
+    (52.982_918_9 * phase.fract()).fract() as f32
 }
+
+/// Noise keeps this far from 0 and 1, so that a value which is a code but for rounding stays that code.
+const MARGIN: f32 = 1e-3;
 
 /// Rounds a value in [0, 1] to one of its two neighbouring codes, so that a neighbourhood's mean is the value.
 /// Values that are codes stay as they are. All channels share a pixel's noise: greys stay grey.
 pub(super) fn quantize(value: f32, position: [u32; 2]) -> u8 {
-    (255.0 * value + interleaved_gradient_noise(position)) as u8
+    let noise = interleaved_gradient_noise(position).clamp(MARGIN, 1.0 - MARGIN);
+    (255.0 * value + noise) as u8
 }
 
 #[cfg(test)]

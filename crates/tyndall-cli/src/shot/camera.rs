@@ -44,8 +44,8 @@ pub enum CameraBase {
 pub(crate) struct SceneCameras<'a> {
     /// Cameras by the names of their nodes.
     pub(crate) named: &'a [(String, Camera)],
-    /// The one that frames the scene.
-    pub(crate) framed: &'a dyn Fn() -> Camera,
+    /// The scene's first camera, or one that frames the scene.
+    pub(crate) framed: Option<Camera>,
     /// Distance from a point to the farthest corner of the scene [m].
     pub(crate) farthest: &'a dyn Fn([f32; 3]) -> f32,
 }
@@ -136,7 +136,7 @@ impl CameraSpec {
     ) -> Result<Camera, ShotError> {
         let mut camera = match &self.base {
             CameraBase::Shot => self.look_at(scene, aspect),
-            CameraBase::Scene => (scene.framed)(),
+            CameraBase::Scene => scene.framed.unwrap_or_else(|| self.look_at(scene, aspect)),
             CameraBase::Named(name) => find(scene.named, name).map_err(|p| self.error(p))?,
         };
         self.change_pose(&mut camera);

@@ -41,6 +41,8 @@ pub struct Shot {
     pub file: PathBuf,
     /// What the picture is of.
     pub scene: SceneSource,
+    /// Where the shot names it.
+    pub scene_location: Location,
     /// Width and height [pixels].
     pub size: [u32; 2],
     /// Where the picture is taken from.
@@ -87,7 +89,12 @@ const KEYS: [&str; 8] = [
 ];
 
 impl SceneSource {
-    fn new(text: &str, folder: &Path) -> Self {
+    /// A scene file, or `builtin:NAME`, as it is given on the command line.
+    pub fn of(path: &Path) -> Self {
+        Self::within(&path.to_string_lossy(), Path::new(""))
+    }
+
+    fn within(text: &str, folder: &Path) -> Self {
         match text.strip_prefix("builtin:") {
             Some(name) => Self::Builtin(name.to_owned()),
             None => Self::File(folder.join(text)),
@@ -159,11 +166,12 @@ impl Shot {
         let section = Section::root(file, root);
         section.only(&KEYS)?;
         let folder = folder(file);
-        let scene = "a path or builtin:NAME";
-        let technique = section.get("technique");
+        let expected = "a path or builtin:NAME";
+        let scene = section.require("scene", expected)?;
         Ok(Self {
             file: file.to_owned(),
-            scene: SceneSource::new(section.require("scene", scene)?.text(scene)?, folder),
+            scene: SceneSource::within(scene.text(expected)?, folder),
+            scene_location: scene.location(),
             size: size(&section)?,
             camera: match section.get("camera") {
                 Some(field) => CameraSpec::read(&field, camera_in_file)?,
@@ -181,7 +189,7 @@ impl Shot {
                 .get("medium")
                 .map(|field| medium::read(&field))
                 .transpose()?,
-            technique: technique::read(technique.as_ref(), &section)?,
+            technique: technique::read(section.get("technique").as_ref())?,
             temporal: section
                 .get("temporal")
                 .map(|field| animation::read_temporal(&field))

@@ -55,13 +55,6 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(super) fn error(&self, problem: Problem) -> ShotError {
-        ShotError {
-            location: location(self.file, &self.path, self.place),
-            problem,
-        }
-    }
-
     /// Refuses keys that are not in `known`.
     pub(super) fn only(&self, known: &[&str]) -> Result<(), ShotError> {
         match self.fields().find(|(key, _)| !known.contains(key)) {

@@ -8,9 +8,6 @@ use super::{
     tree::{Entry, Place, Table, Value},
 };
 
-/// What a shot that names none is rendered with.
-pub(super) const DEFAULT: &str = "ray-march";
-
 /// Every technique's name.
 pub(crate) fn names() -> Vec<&'static str> {
     TABLE.iter().map(|info| info.name).collect()
@@ -21,7 +18,7 @@ pub(super) fn replace(root: &mut Table, name: &str) {
     let same = match root.get("technique").map(|entry| &entry.value) {
         Some(Value::Table(table)) => match table.get("name").map(|entry| &entry.value) {
             Some(Value::Text(old)) => old == name,
-            _ => name == DEFAULT,
+            _ => name == Technique::default().info().name,
         },
         _ => false,
     };
@@ -40,13 +37,12 @@ pub(super) fn replace(root: &mut Table, name: &str) {
 }
 
 /// Reads `[technique]`; the default technique where there is none.
-pub(super) fn read(field: Option<&Field<'_>>, root: &Section<'_>) -> Result<Technique, ShotError> {
+pub(super) fn read(field: Option<&Field<'_>>) -> Result<Technique, ShotError> {
     let section = field.map(Field::section).transpose()?;
     let name = section.as_ref().and_then(|section| section.get("name"));
     let mut technique = match &name {
         Some(field) => named(field)?,
-        None => Technique::from_name(DEFAULT)
-            .ok_or_else(|| root.error(Problem::unknown_name("technique", DEFAULT, &names())))?,
+        None => Technique::default(),
     };
     let parameters = section.iter().flat_map(Section::fields);
     for (key, field) in parameters.filter(|(key, _)| *key != "name") {
@@ -69,11 +65,7 @@ fn set(technique: &mut Technique, key: &str, field: &Field<'_>) -> Result<(), Sh
         Value::Bool(yes) => techniques::Value::Bool(*yes),
         _ => return Err(field.unexpected("a finite number, a word, true or false")),
     };
-    let keys: Vec<&str> = technique
-        .params()
-        .iter()
-        .map(|(info, _)| info.key)
-        .collect();
+    let keys: Vec<&str> = technique.params().iter().map(|info| info.key).collect();
     technique.set(key, &value).map_err(|error| match error {
         ParamError::Unknown { .. } => field.error(Problem::UnknownKey {
             expected: one_of(&keys),

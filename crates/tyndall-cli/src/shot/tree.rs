@@ -189,6 +189,7 @@ impl fmt::Display for Value {
                 write!(f, "[{}]", items.join(", "))
             }
             Self::Integer(number) => write!(f, "{number}"),
+            Self::Real(number) if number.is_nan() => f.write_str("nan"),
             Self::Real(number) => write!(f, "{number:?}"),
             Self::Bool(yes) => write!(f, "{yes}"),
             Self::Text(text) => write!(f, "{text:?}"),

@@ -1,0 +1,168 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
+
+use crate::{
+    layer::Layer,
+    shot::{Override, technique_names},
+};
+
+/// Volumetric shadows in single-scattering media: fog, haze and air with shafts of light.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "tyndall", version, after_help = EXAMPLES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  tyndall render builtin:church                     a built-in scene to church.png
+  tyndall render model.glb -o model.png             frames the model, lights it, fills the air with haze
+  tyndall render shot.toml -o shot.exr --layer final --layer inscatter
+  tyndall info model.glb                            what a scene holds
+
+Exit codes: 0 done, 1 the input is wrong, 2 usage, 3 the device failed.";
+
+/// The commands.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Render a shot or a scene to a picture
+    Render(RenderArgs),
+    /// Measure the error and time of techniques on a shot
+    Compare(CompareArgs),
+    /// Measure the papers' tables on this machine
+    Bench(BenchArgs),
+    /// Open a shot or a scene in a window
+    View(ViewArgs),
+    /// List adapters, limits and techniques, or what a scene holds
+    Info(InfoArgs),
+}
+
+/// Arguments of `tyndall render`.
+#[derive(Clone, Debug, Args)]
+#[command(after_help = RENDER_EXAMPLES)]
+pub struct RenderArgs {
+    /// A shot (.toml) or a scene (.gltf, .glb or builtin:NAME)
+    #[arg(value_name = "SHOT|SCENE")]
+    pub input: PathBuf,
+    /// The picture: .png is tone-mapped, .exr is linear; left out: the input's name with .png, in this folder
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// The technique; takes the place of the shot's, and of its parameters where it is another one
+    #[arg(long, value_name = "T", value_parser = PossibleValuesParser::new(technique_names()))]
+    pub technique: Option<String>,
+    /// Override a key of the shot by its dotted path; the value is TOML or a bare word
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub overrides: Vec<Override>,
+    /// Where to render
+    #[arg(long, value_name = "B", default_value = "auto")]
+    pub backend: BackendChoice,
+    /// What the picture holds; several go into one .exr as named layers
+    #[arg(long = "layer", value_name = "L", default_value = "final")]
+    pub layers: Vec<Layer>,
+    /// Exposure of a .png [EV]: light is multiplied by 2^EV; left out: chosen by the picture's brightness
+    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = exposure)]
+    pub exposure: Option<f32>,
+    /// Write adapter, parameters, milliseconds a pass and bytes as JSON
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+    /// Render a sequence; OUT holds #### or %04d
+    #[arg(long, value_name = "A..B")]
+    pub frames: Option<String>,
+    /// Skip frames that exist
+    #[arg(long, requires = "frames")]
+    pub resume: bool,
+}
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  tyndall render builtin:church
+  tyndall render shot.toml -o shot.exr --layer inscatter --technique reference
+  tyndall render shot.toml --set light.0.shadow_map=4096 --set medium.sigma_s=[0.1,0.1,0.1]
+  tyndall render model.glb --set size=[1920,1080] --set camera.eye=[0,2,5] --exposure -1.5
+
+A .png holds one layer: light is exposed and tone-mapped (Khronos PBR Neutral), transmittance is shown as it is.
+Depth in a .exr is the distance along the view ray in metres. Paths in a shot and in --set are relative to the shot's folder.";
+
+/// Arguments of `tyndall compare`.
+#[derive(Clone, Debug, Args)]
+pub struct CompareArgs {
+    /// A shot (.toml)
+    pub shot: PathBuf,
+    /// The techniques; left out: all that can do the shot
+    #[arg(long, value_name = "A,B,..", value_delimiter = ',')]
+    pub techniques: Vec<String>,
+    /// Where the reference takes its visibility from
+    #[arg(long, value_name = "V", value_parser = ["traced", "shadow-map"])]
+    pub reference: Option<String>,
+    /// Folder of the report
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+}
+
+/// Arguments of `tyndall bench`.
+#[derive(Clone, Debug, Args)]
+pub struct BenchArgs {
+    /// The table to measure; left out: all
+    pub suite: Option<String>,
+    /// Write the numbers as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+/// Arguments of `tyndall view`.
+#[derive(Clone, Debug, Args)]
+pub struct ViewArgs {
+    /// A shot (.toml) or a scene (.gltf, .glb or builtin:NAME)
+    #[arg(value_name = "SHOT|SCENE")]
+    pub input: PathBuf,
+}
+
+/// Arguments of `tyndall info`.
+#[derive(Clone, Debug, Args)]
+pub struct InfoArgs {
+    /// A scene (.gltf, .glb or builtin:NAME); left out: the machine and the techniques
+    pub scene: Option<PathBuf>,
+}
+
+/// Where to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BackendChoice {
+    /// The GPU where there is an adapter and the technique runs there, else the CPU
+    Auto,
+    /// The GPU, or fail
+    Gpu,
+    /// The CPU, with nothing installed
+    Cpu,
+}
+
+fn exposure(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|ev: &f32| ev.abs() <= 100.0)
+        .ok_or_else(|| "expected a number from -100 to 100".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn exposure_is_a_sane_number() {
+        assert_eq!(exposure("-1.5"), Ok(-1.5));
+        for text in ["nan", "inf", "1e9", "bright"] {
+            assert!(exposure(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! `tyndall info`: what this machine, this program and a scene have to offer.
+
+use std::{
+    fmt::Write,
+    io::{ErrorKind, Write as _},
+};
+
+use tyndall::{
+    frame::{Emitter, Projection},
+    techniques::{Backends, TABLE, TechniqueInfo},
+};
+use tyndall_scene::{
+    builtin,
+    geometry::Geometry,
+    scene::{Blocking, Scene},
+};
+
+use crate::{
+    args::InfoArgs, failure::Failure, render::AdapterDescription, setup::load_scene,
+    shot::SceneSource,
+};
+
+pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
+    let mut text = String::new();
+    let written = match &args.scene {
+        Some(scene) => {
+            let scene = load_scene(&SceneSource::of(scene))?;
+            write_scene(&mut text, &scene)
+        }
+        None => write_adapters(&mut text)
+            .and_then(|()| write_techniques(&mut text))
+            .and_then(|()| write_builtins(&mut text)),
+    };
+    written.map_err(Failure::input)?;
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // Whoever reads has read enough.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        done => done.map_err(Failure::input),
+    }
+}
+
+fn write_adapters(text: &mut String) -> std::fmt::Result {
+    writeln!(text, "Adapters")?;
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::PRIMARY;
+    let descriptor = descriptor.with_env();
+    let backends = descriptor.backends;
+    let instance = wgpu::Instance::new(descriptor);
+    let adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    if adapters.is_empty() {
+        writeln!(text, "  none: everything runs on the CPU")?;
+    }
+    for adapter in adapters {
+        write_adapter(text, &adapter)?;
+    }
+    Ok(())
+}
+
+fn write_adapter(text: &mut String, adapter: &wgpu::Adapter) -> std::fmt::Result {
+    use wgpu::Features;
+    let AdapterDescription { name, driver, api } = AdapterDescription::of(adapter);
+    let kind = adapter.get_info().device_type;
+    let limits = adapter.limits();
+    writeln!(text, "  {name} ({kind:?}, {api}, {driver})")?;
+    writeln!(
+        text,
+        "    textures to {} texels a side, buffers to {} MiB",
+        limits.max_texture_dimension_2d,
+        limits.max_buffer_size >> 20
+    )?;
+    for (feature, use_of_it) in [
+        (Features::TIMESTAMP_QUERY, "milliseconds a pass"),
+        (Features::FLOAT32_BLENDABLE, "pictures of any brightness"),
+        (
+            Features::FLOAT32_FILTERABLE,
+            "light textures of any brightness",
+        ),
+    ] {
+        let has = if adapter.features().contains(feature) {
+            "yes"
+        } else {
+            "no"
+        };
+        writeln!(text, "    {use_of_it}: {has}")?;
+    }
+    Ok(())
+}
+
+fn write_techniques(text: &mut String) -> std::fmt::Result {
+    writeln!(text, "\nTechniques (the first is the default)")?;
+    TABLE
+        .iter()
+        .try_for_each(|info| write_technique(text, info))
+}
+
+fn write_technique(text: &mut String, info: &TechniqueInfo) -> std::fmt::Result {
+    let lights: Vec<&str> = info.lights.iter().map(|kind| kind.name()).collect();
+    let backends = match info.backends {
+        Backends::Cpu => "CPU",
+        Backends::Gpu => "GPU",
+        Backends::Both => "GPU and CPU",
+    };
+    writeln!(text, "  {}: {}", info.name, info.about)?;
+    writeln!(text, "    {}", info.citation)?;
+    writeln!(
+        text,
+        "    runs on {backends}; lights: {}",
+        lights.join(", ")
+    )?;
+    for param in (info.default)().params() {
+        writeln!(
+            text,
+            "    technique.{} = {}: {} ({})",
+            param.key, param.default, param.about, param.range
+        )?;
+    }
+    Ok(())
+}
+
+fn write_builtins(text: &mut String) -> std::fmt::Result {
+    writeln!(text, "\nBuilt-in scenes")?;
+    builtin::BUILTINS
+        .iter()
+        .try_for_each(|scene| writeln!(text, "  builtin:{}: {}", scene.name, scene.about))
+}
+
+fn write_scene(text: &mut String, scene: &Scene) -> std::fmt::Result {
+    let geometry = Geometry::new(scene);
+    writeln!(text, "{}", scene.name)?;
+    writeln!(
+        text,
+        "  {} triangles, {} nodes, {} meshes, {} materials, {} textures",
+        geometry.len(),
+        scene.nodes.len(),
+        scene.meshes.len(),
+        scene.materials.len(),
+        scene.textures.len()
+    )?;
+    match geometry.bounds() {
+        Some(bounds) => writeln!(
+            text,
+            "  from {} to {}, {} m",
+            bounds.min,
+            bounds.max,
+            bounds.extent()
+        )?,
+        None => writeln!(text, "  no bounds: there is nothing in it")?,
+    }
+    write_materials(text, scene)?;
+    write_lights(text, scene)?;
+    write_cameras(text, scene)
+}
+
+fn write_materials(text: &mut String, scene: &Scene) -> std::fmt::Result {
+    let count = |matches: fn(&Blocking) -> bool| {
+        let materials = scene.materials.iter();
+        materials.filter(|m| matches(&m.blocking)).count()
+    };
+    writeln!(
+        text,
+        "  materials: {} opaque, {} alpha-tested, {} glass, {} blended",
+        count(|b| matches!(b, Blocking::Opaque)),
+        count(|b| matches!(b, Blocking::Masked { .. })),
+        count(|b| matches!(b, Blocking::Transmissive { .. })),
+        count(|b| matches!(b, Blocking::Blended)),
+    )
+}
+
+fn write_lights(text: &mut String, scene: &Scene) -> std::fmt::Result {
+    for node in &scene.nodes {
+        let what = match node.light {
+            None => continue,
+            Some(Emitter::Directional { illuminance, .. }) => {
+                format!("directional, {illuminance:?} W/m^2")
+            }
+            Some(Emitter::Point { intensity, .. }) => format!("point, {intensity:?} W/sr"),
+            Some(Emitter::Spot {
+                intensity,
+                inner,
+                outer,
+                ..
+            }) => format!("spot, {intensity:?} W/sr, {inner} to {outer} rad"),
+            Some(Emitter::Rect { radiance, .. }) => format!("rect, {radiance:?} W/(m^2 sr)"),
+        };
+        writeln!(text, "  light `{}`: {what}", node.name)?;
+    }
+    Ok(())
+}
+
+fn write_cameras(text: &mut String, scene: &Scene) -> std::fmt::Result {
+    for node in &scene.nodes {
+        let what = match node.camera {
+            None => continue,
+            Some(Projection::Perspective {
+                half_extent,
+                near,
+                far,
+                ..
+            }) => {
+                let yfov = 2.0 * half_extent[1].atan().to_degrees();
+                format!("perspective, yfov {yfov:.1} degrees, {near} to {far} m")
+            }
+            Some(Projection::Orthographic {
+                half_extent,
+                near,
+                far,
+                ..
+            }) => format!(
+                "orthographic, {} m high, {near} to {far} m",
+                2.0 * half_extent[1]
+            ),
+        };
+        writeln!(text, "  camera `{}`: {what}", node.name)?;
+    }
+    Ok(())
+}

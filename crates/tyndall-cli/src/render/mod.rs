@@ -1,0 +1,142 @@
+//! From a setup to layers, on the GPU or on the CPU.
+
+mod backend;
+mod cpu;
+mod gpu;
+
+pub use backend::{AdapterDescription, Backend, Gpu};
+
+use tyndall::{
+    camera::CameraRays,
+    frame::{Camera, Medium},
+    physics::medium::Optics,
+    techniques::{Technique, reference},
+};
+
+use crate::{
+    failure::Failure,
+    layer::{Layer, Layers},
+    picture::Picture,
+    progress::Stages,
+    setup::Setup,
+};
+
+/// What a backend rendered, and what that took.
+pub struct Rendered {
+    /// The layers, in the order they were asked for.
+    pub layers: Layers,
+    /// GPU passes and their milliseconds, in order; empty on the CPU and without timestamps.
+    pub passes: Vec<(String, f64)>,
+    /// Textures and buffers, by what they are for [bytes].
+    pub bytes: Vec<(&'static str, u64)>,
+}
+
+/// Renders the layers (at least one).
+///
+/// # Errors
+/// [`Failure::Input`] where the technique can't do what the shot asks, [`Failure::Device`] where the GPU fails.
+pub fn render(
+    setup: &Setup,
+    backend: &Backend,
+    layers: &[Layer],
+    stages: &mut Stages,
+) -> Result<Rendered, Failure> {
+    let needs = Needs::of(layers, &setup.frame.technique);
+    match backend {
+        Backend::Cpu => cpu::render(setup, needs, layers, stages),
+        Backend::Gpu(gpu) => gpu::render(setup, gpu, needs, layers, stages),
+    }
+}
+
+/// The parts of the pipeline that the layers need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Needs {
+    in_scatter: bool,
+    surface: bool,
+    light_maps: bool,
+}
+
+impl Needs {
+    fn of(layers: &[Layer], technique: &Technique) -> Self {
+        let any = |wanted: [Layer; 2]| layers.iter().any(|layer| wanted.contains(layer));
+        let in_scatter = any([Layer::Final, Layer::Inscatter]);
+        let surface = any([Layer::Final, Layer::Surface]);
+        Self {
+            in_scatter,
+            surface,
+            light_maps: surface || (in_scatter && reads_shadow_maps(technique)),
+        }
+    }
+}
+
+fn reads_shadow_maps(technique: &Technique) -> bool {
+    !matches!(
+        technique,
+        Technique::Reference(reference::Params {
+            visibility: reference::Visibility::Traced,
+            ..
+        })
+    )
+}
+
+/// Length of each pixel's view ray [m].
+fn distances(camera: &Camera, size: [u32; 2], depth: &[f32]) -> Vec<f64> {
+    let rays = CameraRays::new(camera, size);
+    let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+    pixels
+        .zip(depth)
+        .map(|((x, y), depth)| rays.ray(x, y, *depth).length)
+        .collect()
+}
+
+/// Transmittance along each pixel's view ray.
+fn transmittances(medium: &Medium, distances: &[f64]) -> Vec<[f32; 3]> {
+    let optics = Optics::new(medium);
+    distances
+        .iter()
+        .map(|distance| optics.transmittance(*distance).as_vec3().to_array())
+        .collect()
+}
+
+/// The layers that both backends make the same way, from the depth buffer: distance and transmittance.
+fn depth_layer(layer: Layer, setup: &Setup, depth: &[f32]) -> Picture {
+    let distances = distances(&setup.frame.camera, setup.size, depth);
+    let pixels = match layer {
+        Layer::Transmittance => transmittances(&setup.frame.medium, &distances),
+        _ => distances.iter().map(|d| [*d as f32; 3]).collect(),
+    };
+    Picture {
+        size: setup.size,
+        pixels,
+    }
+}
+
+/// Drops the fourth channel.
+fn rgb(pixels: &[[f32; 4]]) -> Vec<[f32; 3]> {
+    pixels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_layers_need_is_computed() {
+        let march = Technique::default();
+        let traced = Technique::Reference(reference::Params::default());
+        for (layers, technique, in_scatter, surface, light_maps) in [
+            (&[Layer::Depth][..], &march, false, false, false),
+            (&[Layer::Inscatter], &march, true, false, true),
+            (&[Layer::Inscatter], &traced, true, false, false),
+            (&[Layer::Final], &traced, true, true, true),
+            (&[Layer::Surface, Layer::Depth], &march, false, true, true),
+        ] {
+            let expected = Needs {
+                in_scatter,
+                surface,
+                light_maps,
+            };
+            assert_eq!(Needs::of(layers, technique), expected, "{layers:?}");
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What `--stats` writes: what was rendered, where, how, and what each part of it took.
+
+use serde_json::{Map, Value, json};
+use tyndall::techniques::{self, Technique};
+
+use crate::{
+    layer::Layer,
+    render::{AdapterDescription, Rendered},
+};
+
+/// A render and its costs.
+pub struct Stats<'a> {
+    /// The adapter; `None` on the CPU.
+    pub adapter: Option<&'a AdapterDescription>,
+    /// The technique.
+    pub technique: &'a Technique,
+    /// Width and height [pixels].
+    pub size: [u32; 2],
+    /// What was asked for.
+    pub layers: &'a [Layer],
+    /// What was rendered.
+    pub rendered: &'a Rendered,
+    /// Wall-clock milliseconds of each stage of the command, in order.
+    pub stages: &'a [(String, f64)],
+    /// Wall-clock milliseconds from the command's start to the written picture.
+    pub total: f64,
+    /// The command line.
+    pub command: Vec<String>,
+}
+
+impl Stats<'_> {
+    /// The report as JSON. Times are milliseconds.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "tyndall": env!("CARGO_PKG_VERSION"),
+            "command": self.command,
+            "backend": if self.adapter.is_some() { "gpu" } else { "cpu" },
+            "adapter": self.adapter.map(|adapter| json!({
+                "name": adapter.name,
+                "driver": adapter.driver,
+                "backend": adapter.api,
+            })),
+            "technique": self.technique.info().name,
+            "parameters": parameters(self.technique),
+            "size": self.size,
+            "layers": self.layers.iter().map(|layer| layer.name()).collect::<Vec<_>>(),
+            "passes": times(&self.rendered.passes),
+            "stages": times(self.stages),
+            "total_ms": self.total,
+            "bytes": bytes(&self.rendered.bytes),
+        })
+    }
+}
+
+fn parameters(technique: &Technique) -> Map<String, Value> {
+    technique
+        .params()
+        .into_iter()
+        .map(|param| {
+            let value = match param.value {
+                techniques::Value::Integer(number) => json!(number),
+                techniques::Value::Real(number) => json!(number),
+                techniques::Value::Word(word) => json!(word),
+                techniques::Value::Bool(yes) => json!(yes),
+            };
+            (param.key.to_owned(), value)
+        })
+        .collect()
+}
+
+fn times(times: &[(String, f64)]) -> Vec<Value> {
+    times
+        .iter()
+        .map(|(name, milliseconds)| json!({ "name": name, "ms": milliseconds }))
+        .collect()
+}
+
+fn bytes(parts: &[(&'static str, u64)]) -> Map<String, Value> {
+    let total = parts.iter().map(|(_, bytes)| bytes).sum::<u64>();
+    parts
+        .iter()
+        .copied()
+        .chain([("total", total)])
+        .map(|(name, bytes)| (name.to_owned(), json!(bytes)))
+        .collect()
+}

@@ -1,0 +1,350 @@
+//! The `tyndall` command from outside: exit codes, messages, and the files it writes or doesn't.
+
+use std::{
+    path::Path,
+    process::{Command, Output},
+};
+
+use tempfile::TempDir;
+use tyndall_testkit::picture::Picture;
+
+/// A shot of a scene that is there, with nothing wrong in it.
+const SHOT: &str = r#"scene = "builtin:empty"
+size = [8, 6]
+[camera]
+eye = [0.0, 1.0, 4.0]
+target = [0.0, 1.0, 0.0]
+near = 0.05
+far = 9.0
+[[light]]
+type = "directional"
+direction = [0.3, -1.0, -0.2]
+illuminance = [10.0, 9.0, 8.0]
+[medium]
+sigma_s = [0.05, 0.08, 0.12]
+sigma_a = [0.01, 0.02, 0.03]
+phase = { kind = "hg", g = 0.3 }
+"#;
+
+/// Runs `tyndall` in a folder.
+fn tyndall(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_tyndall"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn folder_with(file: &str, content: impl AsRef<[u8]>) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(file), content).unwrap();
+    folder
+}
+
+/// Files of a folder, by name.
+fn files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
+    let mut names: Vec<String> = entries
+        .map(|entry| name(entry).to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Asserts that the run failed with this code and one message that holds all of `words`.
+fn assert_fails(output: &Output, code: i32, words: &[&str]) {
+    let stderr = stderr(output);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    let messages = stderr.lines().filter(|line| line.starts_with("error: "));
+    // Mesa's device-select layer, not we, says this where there is no desktop.
+    let messages: Vec<&str> = messages
+        .filter(|m| !m.contains("XDG_RUNTIME_DIR"))
+        .collect();
+    assert_eq!(messages.len(), 1, "{stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "{word} is not in: {stderr}");
+    }
+    assert!(!stderr.contains("panicked"), "{stderr}");
+}
+
+#[test]
+fn wrong_shots_exit_1_name_the_place_and_write_nothing() {
+    for (from, to, words) in [
+        (
+            "sigma_s =",
+            "sgima_s =",
+            &["shot.toml:13", "medium.sgima_s", "did you mean `sigma_s`"][..],
+        ),
+        (
+            "[0.05, 0.08",
+            "[-0.05, 0.08",
+            &["shot.toml:13", "medium.sigma_s", ">= 0", "-0.05"],
+        ),
+        (
+            "g = 0.3",
+            "g = 1.2",
+            &["shot.toml:15", "medium.phase.g", "below 1", "1.2"],
+        ),
+        (
+            "[0.0, 1.0, 4.0]",
+            "[0.0, nan, 4.0]",
+            &["shot.toml:4", "camera.eye", "finite", "nan"],
+        ),
+        (
+            "builtin:empty",
+            "builtin:empyt",
+            &["shot.toml:1", "scene", "empyt", "did you mean `empty`"],
+        ),
+        (
+            "builtin:empty",
+            "missing.glb",
+            &["shot.toml:1", "missing.glb"],
+        ),
+        (
+            "builtin:empty",
+            "missing.obj",
+            &["shot.toml:1", "missing.obj", ".glb"],
+        ),
+        (
+            "[medium]",
+            "texture = { file = \"no.png\", center = [0,0,0], edge_x = [1,0,0], edge_y = [0,0,1] }\n[medium]",
+            &["shot.toml:12", "light.0.texture.file", "no.png"],
+        ),
+        ("size = [8, 6]", "size = [8, 6", &["shot.toml:3", "TOML"]),
+    ] {
+        assert!(SHOT.contains(from), "{from}");
+        let folder = folder_with("shot.toml", SHOT.replacen(from, to, 1));
+        let output = tyndall(
+            folder.path(),
+            &["render", "shot.toml", "-o", "out.exr", "--backend", "cpu"],
+        );
+        assert_fails(&output, 1, words);
+        assert_eq!(files(folder.path()), ["shot.toml"], "{to}");
+    }
+}
+
+#[test]
+fn wrong_files_exit_1_and_write_nothing() {
+    let folder = folder_with(
+        "cut.glb",
+        b"glTF\x02\0\0\0\x40\x01\0\0\x2c\x01\0\0JSON{\"asset\"",
+    );
+    for (arguments, words) in [
+        (&["render", "cut.glb"][..], &["cut.glb"][..]),
+        (&["render", "none.toml"], &["none.toml", "cannot be read"]),
+        (&["render", "none.glb"], &["none.glb", "cannot be read"]),
+        (
+            &["render", "builtin:empty", "-o", "no/such/a.png"],
+            &["no/such", "does not exist"],
+        ),
+        (
+            &["render", "builtin:empty", "--stats", "no/such/a.json"],
+            &["no/such", "does not exist"],
+        ),
+        (&["info", "cut.glb"], &["cut.glb"]),
+    ] {
+        assert_fails(&tyndall(folder.path(), arguments), 1, words);
+        assert_eq!(files(folder.path()), ["cut.glb"], "{arguments:?}");
+    }
+}
+
+#[test]
+fn wrong_usage_exits_2_and_writes_nothing() {
+    let folder = folder_with("shot.toml", SHOT);
+    for (arguments, words) in [
+        (&["render"][..], &["SHOT"][..]),
+        (&["rendr", "shot.toml"], &["rendr", "render"]),
+        (
+            &["render", "shot.toml", "--technique", "magic"],
+            &["magic", "ray-march", "reference"],
+        ),
+        (
+            &["render", "shot.toml", "--set", "medium.sigma_s"],
+            &["--set", "KEY=VALUE"],
+        ),
+        (
+            &["render", "shot.toml", "--layer", "smoke"],
+            &["smoke", "inscatter"],
+        ),
+        (
+            &["render", "shot.toml", "--exposure", "nan"],
+            &["--exposure"],
+        ),
+        (
+            &["render", "shot.toml", "-o", "out.tga"],
+            &["out.tga", ".png", ".exr"],
+        ),
+        (
+            &[
+                "render",
+                "shot.toml",
+                "--layer",
+                "final",
+                "--layer",
+                "depth",
+            ],
+            &["one layer", ".exr"],
+        ),
+        (
+            &[
+                "render",
+                "shot.toml",
+                "--technique",
+                "reference",
+                "--backend",
+                "gpu",
+            ],
+            &["reference", "CPU only"],
+        ),
+        (
+            &["render", "shot.toml", "--frames", "0..9", "-o", "f####.png"],
+            &["--frames", "not there yet"],
+        ),
+        (&["compare", "shot.toml"], &["compare", "not there yet"]),
+        (&["bench"], &["bench", "not there yet"]),
+        (&["view", "shot.toml"], &["view", "not there yet"]),
+    ] {
+        assert_fails(&tyndall(folder.path(), arguments), 2, words);
+        assert_eq!(files(folder.path()), ["shot.toml"], "{arguments:?}");
+    }
+}
+
+#[test]
+fn layers_go_into_one_exr_and_final_is_their_sum() {
+    let folder = folder_with("shot.toml", SHOT);
+    let mut arguments = vec!["render", "shot.toml", "-o", "out.exr", "--backend", "cpu"];
+    for layer in ["final", "inscatter", "transmittance", "surface", "depth"] {
+        arguments.extend(["--layer", layer]);
+    }
+    let output = tyndall(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let file = folder.path().join("out.exr");
+    let [last, in_scatter, transmittance, surface, depth] =
+        ["final", "inscatter", "transmittance", "surface", "depth"]
+            .map(|layer| channels(&file, layer));
+    assert_eq!(last.len(), 8 * 6 * 3);
+    assert!(in_scatter.iter().all(|light| *light > 0.0));
+    for i in 0..last.len() {
+        let sum = surface[i] * transmittance[i] + in_scatter[i];
+        assert!(
+            (last[i] - sum).abs() <= 1e-6 * sum,
+            "{i}: {} {sum}",
+            last[i]
+        );
+        let sigma_t = [0.06, 0.10, 0.15][i % 3];
+        let expected = (-sigma_t * depth[i]).exp();
+        assert!((transmittance[i] - expected).abs() < 1e-6, "{i}");
+        // An empty scene ends on the far plane, 9 m before the eye; the picture's corner is 35 degrees off its centre.
+        assert!(depth[i] >= 9.0 && depth[i] < 9.0 / 0.8, "{i}: {}", depth[i]);
+    }
+}
+
+/// A layer's R, G, B, pixel by pixel.
+fn channels(file: &Path, layer: &str) -> Vec<f32> {
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(file)
+        .unwrap();
+    let [r, g, b] = ["R", "G", "B"].map(|channel| {
+        let name = format!("{layer}.{channel}");
+        let channels = &image.layer_data.channel_data.list;
+        let found = channels.iter().find(|c| c.name.eq(name.as_str())).unwrap();
+        found.sample_data.values_as_f32().collect::<Vec<f32>>()
+    });
+    (0..r.len()).flat_map(|i| [r[i], g[i], b[i]]).collect()
+}
+
+#[test]
+fn a_png_is_called_after_the_shot_and_stats_say_what_it_took() {
+    let folder = folder_with("shot.toml", SHOT);
+    let arguments = [
+        "render",
+        "shot.toml",
+        "--backend",
+        "cpu",
+        "--stats",
+        "stats.json",
+        "--set",
+        "technique.steps=33",
+    ];
+    let output = tyndall(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(
+        files(folder.path()),
+        ["shot.png", "shot.toml", "stats.json"]
+    );
+    let picture = image::open(folder.path().join("shot.png")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (8, 6));
+    let stats = std::fs::read(folder.path().join("stats.json")).unwrap();
+    let stats: serde_json::Value = serde_json::from_slice(&stats).unwrap();
+    assert_eq!(stats["backend"], "cpu");
+    assert_eq!(stats["adapter"], serde_json::Value::Null);
+    assert_eq!(stats["technique"], "ray-march");
+    assert_eq!(stats["parameters"]["steps"], 33);
+    assert_eq!(stats["size"], serde_json::json!([8, 6]));
+    assert!(stats["total_ms"].as_f64().unwrap() > 0.0);
+    assert!(stats["bytes"]["total"].is_u64());
+    let stages = stats["stages"].as_array().unwrap();
+    assert!(
+        stages
+            .iter()
+            .any(|stage| stage["name"] == "in-scatter by ray-march")
+    );
+}
+
+/// Hides Vulkan's drivers, which is all there is on Linux.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_driver_the_cpu_gives_the_same_picture() {
+    let folder = folder_with("shot.toml", SHOT);
+    let asked = ["render", "shot.toml", "-o", "cpu.exr", "--backend", "cpu"];
+    assert!(tyndall(folder.path(), &asked).status.success());
+    let output = Command::new(env!("CARGO_BIN_EXE_tyndall"))
+        .args(["render", "shot.toml", "-o", "auto.exr"])
+        .envs([
+            ("VK_ICD_FILENAMES", "/nonexistent"),
+            ("VK_DRIVER_FILES", "/nonexistent"),
+        ])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let stderr = stderr(&output);
+    assert!(output.status.success(), "{stderr}");
+    assert!(
+        stderr.contains("backend: CPU (there is no graphics adapter)"),
+        "{stderr}"
+    );
+    let read = |name: &str| Picture::read_exr(&folder.path().join(name)).unwrap();
+    assert_eq!(read("auto.exr"), read("cpu.exr"));
+}
+
+#[test]
+fn info_lists_techniques_with_their_parameters_and_what_a_scene_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = tyndall(folder.path(), &["info"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = String::from_utf8_lossy(&output.stdout);
+    for word in [
+        "Adapters",
+        "ray-march",
+        "technique.steps = 512",
+        "reference",
+        "builtin:empty",
+    ] {
+        assert!(text.contains(word), "{word} is not in: {text}");
+    }
+    let output = tyndall(folder.path(), &["info", "builtin:empty"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("0 triangles"), "{text}");
+}
