@@ -118,7 +118,7 @@ fn lights(shot: &Shot, framing: Option<&Framing>) -> Result<Vec<LightSpec>, Shot
     match (&shot.lights, framing) {
         (Some(lights), _) => Ok(lights.clone()),
         (None, Some(framing)) => {
-            let emitters: Vec<Emitter> = framing.lights.iter().map(|l| l.emitter).collect();
+            let emitters: Vec<Emitter> = framing.lights.clone();
             shot.scene_lights(&emitters)
         }
         (None, None) => Ok(Vec::new()),
