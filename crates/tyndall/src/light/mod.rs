@@ -186,16 +186,28 @@ impl<'a> LightModel<'a> {
         }
     }
 
-    /// Distances within `[a, b]` where the light along the ray has a kink: the border of a spot's inner cone.
-    pub fn kinks(&self, origin: DVec3, direction: DVec3, [a, b]: [f64; 2]) -> [f64; 2] {
-        match self.shape {
-            Shape::Spot {
-                position,
-                axis,
-                cos_inner,
-                ..
-            } => cone::cone_interval(origin - position, direction, axis, cos_inner, [a, b]),
-            _ => [a, b],
+    /// Appends distances within `(a, b)`, in any order, between which the light along the ray is smooth but for the
+    /// small kinks at a picture's texels: the borders of a spot's inner cone and of the picture, and enough points
+    /// between that no stretch spans many texels.
+    pub(crate) fn breaks(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        [a, b]: [f64; 2],
+        breaks: &mut Vec<f64>,
+    ) {
+        if let Shape::Spot {
+            position,
+            axis,
+            cos_inner,
+            ..
+        } = self.shape
+        {
+            let inner = cone::cone_interval(origin - position, direction, axis, cos_inner, [a, b]);
+            breaks.extend(inner.iter().filter(|s| **s > a && **s < b));
+        }
+        if let Some((mapping, picture)) = &self.texture {
+            mapping.breaks(origin, direction, [a, b], picture.size, breaks);
         }
     }
 

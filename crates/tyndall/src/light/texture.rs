@@ -114,7 +114,44 @@ impl TextureMapping {
             ],
         }
     }
+
+    /// Appends the distances of the ray within `(a, b)` where it crosses the picture's border, and points between
+    /// such that a stretch spans at most [`TEXELS_A_STRETCH`] texels (on the sphere: a fixed number).
+    pub(crate) fn breaks(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        [a, b]: [f64; 2],
+        size: [u32; 2],
+        breaks: &mut Vec<f64>,
+    ) {
+        let q = origin - self.origin;
+        let at = self.rows.map(|row| [row.dot(q), row.dot(direction)]);
+        let w = match self.kind {
+            MappingKind::Affine => [1.0, 0.0],
+            MappingKind::Projective => at[2],
+            MappingKind::Sphere => {
+                let step = (b - a) / f64::from(SPHERE_STRETCHES);
+                breaks.extend((1..SPHERE_STRETCHES).map(|i| a + f64::from(i) * step));
+                return;
+            }
+        };
+        for (axis, texels) in [0, 1].into_iter().zip(size) {
+            // x(s) = k w(s) at k = -1/2 (left or top border) .. 1/2 (right or bottom).
+            let stretches = texels.div_ceil(TEXELS_A_STRETCH);
+            let crossings = (0..=stretches).map(|i| {
+                let k = f64::from(i) / f64::from(stretches) - 0.5;
+                (k * w[0] - at[axis][0]) / (at[axis][1] - k * w[1])
+            });
+            breaks.extend(crossings.filter(|s| *s > a && *s < b));
+        }
+    }
 }
+
+/// Texels that quadrature may take at once.
+const TEXELS_A_STRETCH: u32 = 8;
+/// Stretches of a ray past a light with a picture on its sphere.
+const SPHERE_STRETCHES: u32 = 64;
 
 impl LightTexture {
     /// The picture at (u, v), bilinear between texel centres; black outside it.

@@ -12,10 +12,10 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 use super::{SIZE, Stage, StageLight, picture};
 
 /// The target that stages are composited on.
-pub const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+pub(crate) const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// An effect for stages.
-pub fn effect(gpu: &TestDevice) -> Effect {
+pub(crate) fn effect(gpu: &TestDevice) -> Effect {
     let options = EffectOptions {
         target_format: TARGET,
         output: OutputPrecision::Full,
@@ -24,13 +24,13 @@ pub fn effect(gpu: &TestDevice) -> Effect {
 }
 
 /// A stage's pictures on the GPU.
-pub struct Uploaded {
-    pub depth: wgpu::TextureView,
+pub(crate) struct Uploaded {
+    pub(crate) depth: wgpu::TextureView,
     lights: Vec<[Option<wgpu::TextureView>; 3]>,
 }
 
 impl Uploaded {
-    pub fn new(gpu: &TestDevice, stage: &Stage) -> Self {
+    pub(crate) fn new(gpu: &TestDevice, stage: &Stage) -> Self {
         let light = |(light, pictures): (&tyndall::frame::Light, &StageLight)| {
             let faces = match light.shadow {
                 Some(ShadowProjection::Cube { .. }) => 6,
@@ -57,7 +57,7 @@ impl Uploaded {
         }
     }
 
-    pub fn light_inputs(&self) -> Vec<LightInputs<'_>> {
+    pub(crate) fn light_inputs(&self) -> Vec<LightInputs<'_>> {
         self.lights
             .iter()
             .map(|[shadow_map, glass, texture]| LightInputs {
@@ -70,7 +70,7 @@ impl Uploaded {
 }
 
 /// The output of a technique: rgb in-scatter, a mean transmittance.
-pub fn output(
+pub(crate) fn output(
     gpu: &TestDevice,
     effect: &Effect,
     stage: &Stage,
@@ -97,7 +97,12 @@ pub fn output(
 }
 
 /// In-scatter by the GPU backend.
-pub fn on_gpu(gpu: &TestDevice, effect: &Effect, stage: &Stage, technique: Technique) -> Picture {
+pub(crate) fn on_gpu(
+    gpu: &TestDevice,
+    effect: &Effect,
+    stage: &Stage,
+    technique: Technique,
+) -> Picture {
     picture(&output(gpu, effect, stage, technique))
 }
 

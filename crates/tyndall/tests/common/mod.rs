@@ -13,38 +13,38 @@ use tyndall::{
 };
 use tyndall_testkit::picture::Picture;
 
-pub mod gpu;
+pub(crate) mod gpu;
 
 /// Width and height of the pictures [pixels].
-pub const SIZE: [u32; 2] = [48, 36];
+pub(crate) const SIZE: [u32; 2] = [48, 36];
 const MAP: u32 = 64;
 const GLASS_LAYERS: u32 = 2;
 
 /// A frame and its pictures.
-pub struct Stage {
-    pub name: String,
-    pub frame: Frame,
-    pub depth: Vec<f32>,
-    pub lights: Vec<StageLight>,
+pub(crate) struct Stage {
+    pub(crate) name: String,
+    pub(crate) frame: Frame,
+    pub(crate) depth: Vec<f32>,
+    pub(crate) lights: Vec<StageLight>,
 }
 
 /// The pictures of one light.
 #[derive(Clone)]
-pub struct StageLight {
-    pub shadow_map: Option<ShadowMap>,
-    pub glass: Option<GlassMap>,
-    pub texture: Option<LightTexture>,
+pub(crate) struct StageLight {
+    pub(crate) shadow_map: Option<ShadowMap>,
+    pub(crate) glass: Option<GlassMap>,
+    pub(crate) texture: Option<LightTexture>,
 }
 
 /// A number in [0, 1) that looks random.
-pub fn noise(seed: u32) -> f32 {
+pub(crate) fn noise(seed: u32) -> f32 {
     let mut x = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     x = ((x >> ((x >> 28) + 4)) ^ x).wrapping_mul(277_803_737);
     ((x >> 22) ^ x) as f32 / 4_294_967_296.0
 }
 
 /// A technique by name, with parameters.
-pub fn technique(name: &str, params: &[(&str, Value)]) -> Technique {
+pub(crate) fn technique(name: &str, params: &[(&str, Value)]) -> Technique {
     let mut technique = Technique::from_name(name).expect("a technique of the table");
     for (key, value) in params {
         technique.set(key, value).expect("a parameter of it");
@@ -52,12 +52,12 @@ pub fn technique(name: &str, params: &[(&str, Value)]) -> Technique {
     technique
 }
 
-pub fn steps(n: i64) -> (&'static str, Value) {
+pub(crate) fn steps(n: i64) -> (&'static str, Value) {
     ("steps", Value::Integer(n))
 }
 
 impl Stage {
-    pub fn cpu_lights(&self) -> Vec<CpuLightInputs<'_>> {
+    pub(crate) fn cpu_lights(&self) -> Vec<CpuLightInputs<'_>> {
         fn inputs(light: &StageLight) -> CpuLightInputs<'_> {
             CpuLightInputs {
                 shadow_map: light.shadow_map.as_ref(),
@@ -69,7 +69,7 @@ impl Stage {
     }
 
     /// In-scatter by the CPU backend.
-    pub fn on_cpu(&self, technique: Technique) -> Picture {
+    pub(crate) fn on_cpu(&self, technique: Technique) -> Picture {
         let frame = Frame {
             technique,
             ..self.frame.clone()
@@ -87,7 +87,7 @@ impl Stage {
 }
 
 /// The colours of RGBA pixels.
-pub fn picture(pixels: &[[f32; 4]]) -> Picture {
+pub(crate) fn picture(pixels: &[[f32; 4]]) -> Picture {
     let colors = pixels.iter().map(|p| [p[0], p[1], p[2]].map(f64::from));
     Picture::new(SIZE.map(|n| n as usize), colors.collect()).expect("as many as the size")
 }
@@ -297,7 +297,7 @@ fn light_texture() -> LightTexture {
 }
 
 /// The pictures a light asks for.
-pub fn pictures(light: &Light, with_glass: bool) -> StageLight {
+pub(crate) fn pictures(light: &Light, with_glass: bool) -> StageLight {
     let (faces, reversed) = match light.shadow {
         Some(ShadowProjection::Cube { reversed_depth, .. }) => (6, reversed_depth),
         Some(ShadowProjection::Single { reversed_depth, .. }) => (1, reversed_depth),
@@ -312,7 +312,7 @@ pub fn pictures(light: &Light, with_glass: bool) -> StageLight {
 }
 
 /// A bumpy wall, and the far plane in a corner.
-pub fn depth(reversed: bool) -> Vec<f32> {
+pub(crate) fn depth(reversed: bool) -> Vec<f32> {
     let pixel = |i: u32| {
         let (x, y) = (i % SIZE[0], i / SIZE[0]);
         // 1 at the near plane: 0.1 / 30 / 0.1 .. in terms of perspective about 3 to 30 m.
@@ -331,7 +331,13 @@ pub fn depth(reversed: bool) -> Vec<f32> {
 }
 
 /// A stage of one light.
-pub fn stage(name: String, camera: Camera, medium: Medium, light: Light, glass: bool) -> Stage {
+pub(crate) fn stage(
+    name: String,
+    camera: Camera,
+    medium: Medium,
+    light: Light,
+    glass: bool,
+) -> Stage {
     Stage {
         name,
         depth: depth(camera.reversed_depth),
@@ -346,7 +352,7 @@ pub fn stage(name: String, camera: Camera, medium: Medium, light: Light, glass: 
 }
 
 /// Every light with every camera; media and glass take turns, so that each meets each light.
-pub fn stages() -> Vec<Stage> {
+pub(crate) fn stages() -> Vec<Stage> {
     let (media, cameras) = (media(), cameras());
     let mut stages = Vec::new();
     for (i, (light_name, light)) in lights().into_iter().enumerate() {
@@ -361,7 +367,7 @@ pub fn stages() -> Vec<Stage> {
 }
 
 /// A stage of all lights at once.
-pub fn crowd() -> Stage {
+pub(crate) fn crowd() -> Stage {
     let (_, camera) = cameras()[0];
     let [_, (_, medium), ..] = media();
     let lights: Vec<Light> = lights().into_iter().map(|(_, light)| light).collect();

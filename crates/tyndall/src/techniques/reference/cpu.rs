@@ -75,14 +75,21 @@ impl Reference<'_> {
             (None, None) => {}
         }
         let integral = Integral::new(ray, model, self.scene, self.tolerance);
-        let kinks = model.kinks(ray.origin, ray.direction, span);
+        let mut breaks = Vec::new();
+        model.breaks(ray.origin, ray.direction, span, &mut breaks);
+        breaks.sort_unstable_by(f64::total_cmp);
         let mut sum = DVec3::ZERO;
         lit_stretches(shades, span, |[from, to], tint| {
-            let cuts = kinks.map(|k| k.clamp(from, to));
-            for [a, b] in [[from, cuts[0]], cuts, [cuts[1], to]] {
-                if a < b {
-                    sum += tint * integral.over([a, b]);
-                }
+            let first = breaks.partition_point(|s| *s <= from);
+            let mut a = from;
+            for b in breaks[first..]
+                .iter()
+                .copied()
+                .take_while(|s| *s < to)
+                .chain([to])
+            {
+                sum += tint * integral.over([a, b]);
+                a = b;
             }
         });
         sum
