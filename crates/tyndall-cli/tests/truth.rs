@@ -20,21 +20,23 @@ struct Bounds {
     ray_march: Option<f64>,
 }
 
+/// Beside each bound what was measured: by the reference; by `ray-march` on the CPU, and on llvmpipe (Mesa 22.3.6), November 2026.
 const BOUNDS: &[Bounds] = &[
-    bounds("box-point", 0.003, Some(0.005)),
-    bounds("city-lamp", 0.003, Some(0.010)),
+    bounds("box-point", 5e-5, Some(2e-4)), // 0.00001; 0.00006, 0.00006
+    bounds("city-lamp", 1e-4, Some(4e-4)), // 0.00004; 0.00018, 0.00018
     // The truth itself has 256 samples of the light.
-    bounds("donuts-rect", 0.02, None),
-    bounds("dragon-gobo", 0.003, Some(0.010)),
-    bounds("dragon-spot", 0.003, Some(0.005)),
-    bounds("hall-sun", 0.003, Some(0.010)),
-    bounds("sibenik-rose", 0.003, Some(0.030)),
-    bounds("sibenik-sun", 0.003, Some(0.025)),
-    bounds("terrain-sun", 0.003, Some(0.003)),
+    bounds("donuts-rect", 0.012, None),         // 0.00730
+    bounds("dragon-gobo", 8e-4, Some(8e-4)),    // 0.00040; 0.00038, 0.00038
+    bounds("dragon-spot", 4e-4, Some(8e-4)),    // 0.00017; 0.00033, 0.00038
+    bounds("hall-sun", 0.001, Some(0.009)),     // 0.00050; 0.00645, 0.00643
+    bounds("sibenik-rose", 0.001, Some(0.018)), // 0.00051; 0.01182, 0.01179
+    bounds("sibenik-sun", 0.002, Some(0.022)),  // 0.00106; 0.01577, 0.01577
+    bounds("terrain-sun", 5e-5, Some(3e-4)),    // 0.00002; 0.00007, 0.00011
 ];
 
-/// How far GPU and CPU may be apart with the same steps and shadow map: they differ in precision only.
-const BACKENDS_APART: f64 = 0.002;
+/// How far GPU and CPU may be apart (relMAE): f32 against f64, a rasterised shadow map against a ray-cast one.
+/// Measured: at most 0.00017, on sibenik-rose.
+const BACKENDS_APART: f64 = 4e-4;
 
 const STEPS: &str = "technique.steps=2048";
 
@@ -173,6 +175,6 @@ fn row(shot: &str, what: &str, error: &PictureError, bound: f64) -> String {
         rel_mae, p99, bias, ..
     } = error;
     format!(
-        "{shot:<13} {what:<16} relMAE {rel_mae:.5} (at most {bound:.3})  bias {bias:+.5}  p99 {p99:.4}"
+        "{shot:<13} {what:<16} relMAE {rel_mae:.5} (at most {bound:.5})  bias {bias:+.5}  p99 {p99:.4}"
     )
 }
