@@ -16,9 +16,9 @@ const SEED: u64 = 5;
 const KINDS: u64 = 6;
 /// Branches of a tree, and leaves (of two triangles) at the end of each.
 const BRANCHES: u32 = 26;
-const LEAVES: u32 = 95;
+const LEAVES: u32 = 70;
 /// Half a leaf's length and width [m].
-const LEAF: [f32; 2] = [0.17, 0.09];
+const LEAF: [f32; 2] = [0.19, 0.10];
 /// Distance between trees, before they are moved at random [m].
 const SPACING: f32 = 6.0;
 /// Trees to both sides of the middle and along the path.

@@ -45,7 +45,7 @@ pub const BUILTINS: &[Builtin] = &[
     },
     Builtin {
         name: "forest",
-        about: "a path under trees with 400,000 leaf triangles; a low sun through the crowns",
+        about: "a path under trees with half a million leaf triangles; a low sun through the crowns",
         make: forest::make,
     },
     Builtin {

@@ -32,7 +32,7 @@ pub(super) fn make() -> Scene {
         50.0,
         [10.0, 15_000.0],
     );
-    builder.sun(vec3(0.75, -0.28, 0.60), [10.0, 8.6, 6.8]);
+    builder.sun(vec3(0.42, -0.26, 0.87), [10.0, 8.6, 6.8]);
     builder.finish()
 }
 

@@ -28,9 +28,12 @@ const ENCLOSED: f32 = 0.7;
 const INTERIOR: f32 = 0.15;
 
 /// Spots inside that are looked at closely, ways to look from each, and cameras that remain.
-const SPOTS: usize = 96;
-const HEADINGS: u32 = 16;
-const KEPT: usize = 10;
+const SPOTS: usize = 64;
+const HEADINGS: u32 = 12;
+const KEPT: usize = 6;
+
+/// Least distance of a camera inside from surfaces, as a share of the scene's diagonal.
+const CLEARANCE: f32 = 0.02;
 
 /// Views from all round a thing.
 const OUTSIDE_VIEWS: u32 = 12;
@@ -81,28 +84,38 @@ fn is_enclosed(tracer: &Tracer, point: Vec3, bounds: &Bounds) -> bool {
     fronts as f32 >= ENCLOSED * DIRECTIONS as f32
 }
 
-/// The cameras with the longest free views.
+/// The cameras with the longest free views, none of them much like another.
 fn inside_cameras(tracer: &Tracer, inside: &[Vec3], bounds: &Bounds, aspect: f32) -> Vec<Camera> {
     let far = bounds.extent().length();
-    let mut cameras: Vec<(f32, Camera)> = inside
+    let mut views: Vec<(f32, Camera)> = inside
         .par_iter()
         .take(SPOTS)
-        .filter_map(|&point| {
-            let eye = at_eye_height(tracer, point, far)?;
-            let clearance = clearance(tracer, eye, far);
-            let near = (0.1 * clearance).clamp(1e-5 * far, 1e-3 * far);
-            let views = (0..HEADINGS).map(|i| {
+        .filter_map(|&point| at_eye_height(tracer, point, far))
+        .filter(|&eye| is_enclosed(tracer, eye, bounds))
+        .filter(|&eye| clearance(tracer, eye, far) >= CLEARANCE * far)
+        .flat_map_iter(|eye| {
+            (0..HEADINGS).map(move |i| {
                 let heading = TAU * i as f32 / HEADINGS as f32;
                 let target = eye + looking(heading, INSIDE_PITCH);
-                let camera = perspective(eye, target, INSIDE_YFOV, aspect, [near, far]);
+                let camera = perspective(eye, target, INSIDE_YFOV, aspect, [1e-3 * far, far]);
                 (openness(tracer, &camera, far), camera)
-            });
-            views.max_by(|a, b| a.0.total_cmp(&b.0))
+            })
         })
         .collect();
-    cameras.sort_by(|a, b| b.0.total_cmp(&a.0));
-    cameras.truncate(KEPT);
-    cameras.into_iter().map(|(_, camera)| camera).collect()
+    views.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut kept: Vec<Camera> = Vec::new();
+    for (_, camera) in views {
+        if kept.len() < KEPT && !kept.iter().any(|other| are_alike(&camera, other, far)) {
+            kept.push(camera);
+        }
+    }
+    kept
+}
+
+/// Whether two cameras stand close together and look the same way.
+fn are_alike(a: &Camera, b: &Camera, far: f32) -> bool {
+    let distance = Vec3::from(a.eye).distance(Vec3::from(b.eye));
+    distance < 0.1 * far && Vec3::from(a.forward).dot(Vec3::from(b.forward)) > 0.7
 }
 
 /// The point moved up or down to where somebody on the floor has his eyes; `None` without floor or ceiling.
@@ -120,17 +133,16 @@ fn clearance(tracer: &Tracer, point: Vec3, far: f32) -> f32 {
         .fold(far, f32::min)
 }
 
-/// Mean of the square roots of how far a few view rays reach: long views, but none blocked close by.
+/// Sum of the square roots of how far a few view rays reach: long views, but none blocked close by. A ray that leaves
+/// the interior sees nothing of it.
 fn openness(tracer: &Tracer, camera: &Camera, far: f32) -> f32 {
     const RAYS: [u32; 2] = [7, 5];
     let view = View::new(camera, RAYS);
-    let lengths = (0..RAYS[0] * RAYS[1]).map(|i| {
-        let ray = view.ray(i % RAYS[0], i / RAYS[0]);
-        tracer
-            .closest(&ray, [0.0, f64::from(far)])
-            .map_or(far, |hit| hit.distance as f32)
-    });
-    lengths.map(f32::sqrt).sum()
+    (0..RAYS[0] * RAYS[1])
+        .map(|i| view.ray(i % RAYS[0], i / RAYS[0]))
+        .filter_map(|ray| tracer.closest(&ray, [0.0, f64::from(far)]))
+        .map(|hit| hit.distance.sqrt() as f32)
+        .sum()
 }
 
 /// Looks at the middle of the bounds from a heading, from where all of them are in the picture.

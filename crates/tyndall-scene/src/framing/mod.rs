@@ -22,11 +22,11 @@ pub use nodes::{cameras, lights};
 const SUN: [f32; 3] = [10.0, 9.5, 9.0];
 
 /// Elevations of the suns that are tried, and how many stand round the sky at each [degrees].
-const SUN_ELEVATIONS: [f32; 6] = [15.0, 25.0, 35.0, 45.0, 55.0, 65.0];
-const SUN_AZIMUTHS: u32 = 16;
+const SUN_ELEVATIONS: [f32; 4] = [20.0, 33.0, 46.0, 60.0];
+const SUN_AZIMUTHS: u32 = 14;
 
 /// Optical depth of the default medium over the mean length of the view rays.
-const OPTICAL_DEPTH: f32 = 0.6;
+const OPTICAL_DEPTH: f32 = 0.45;
 
 /// Share of scattering in the default medium's extinction.
 const ALBEDO: f32 = 0.9;

@@ -13,7 +13,10 @@ use super::MEAN_COSINE;
 
 /// View rays across and down, and points on each.
 const RAYS: [u32; 2] = [20, 15];
-const POINTS: u32 = 6;
+const POINTS: u32 = 16;
+
+/// What contrast counts for where the eye itself is in the light.
+const LIT_EYE: f64 = 0.5;
 
 /// The medium seen by a camera, as points on a few view rays.
 pub(super) struct Probe {
@@ -36,7 +39,7 @@ impl Probe {
                 let [near, far] = view.span(&ray);
                 let end = tracer
                     .closest(&ray, [near, far])
-                    .map_or_else(|| exit(&ray, bounds).clamp(near, far), |hit| hit.distance);
+                    .map_or_else(|| exit(&ray, bounds).min(far), |hit| hit.distance);
                 (ray, end)
             })
             .collect();
@@ -48,20 +51,28 @@ impl Probe {
         }
     }
 
-    /// Mean length of the view rays [m].
+    /// Mean length of the view rays that meet the scene's bounds [m].
     pub(super) fn mean_length(&self) -> f32 {
-        let sum: f64 = self.rays.iter().map(|(_, length)| length).sum();
-        (sum / self.rays.len() as f64).max(self.margin) as f32
+        let lengths = self.rays.iter().map(|(_, length)| length);
+        let (sum, count) = lengths
+            .filter(|&&length| length > 0.0)
+            .fold((0.0, 0.0), |(sum, count), length| {
+                (sum + length, count + 1.0)
+            });
+        if count > 0.0 {
+            (sum / count) as f32
+        } else {
+            self.diagonal as f32
+        }
     }
 
-    /// Mean difference in in-scattered light between neighbouring rays, relative to what the lights could do at most
-    /// if they were as bright as the brightest ray everywhere.
+    /// Sum of the differences in in-scattered light between neighbouring rays over the square root of all the light:
+    /// between the absolute contrast, which likes to be flooded with light, and the relative one, which likes specks.
     pub(super) fn contrast(&self, tracer: &Tracer, lights: &[Emitter]) -> f32 {
         let in_scatter: Vec<f64> = self
             .rays
             .iter()
-            .enumerate()
-            .map(|(i, (ray, length))| self.in_scatter(tracer, ray, *length, lights, i))
+            .map(|(ray, length)| self.in_scatter(tracer, ray, *length, lights))
             .collect();
         let [columns, rows] = RAYS.map(|n| n as usize);
         let at = |x: usize, y: usize| in_scatter[y * columns + x];
@@ -73,21 +84,31 @@ impl Probe {
             + down
                 .map(|(x, y)| (at(x, y) - at(x, y - 1)).abs())
                 .sum::<f64>();
-        differences as f32
+        let total: f64 = in_scatter.iter().sum();
+        if total == 0.0 {
+            return 0.0;
+        }
+        let share = if self.eye_is_lit(tracer, lights) {
+            LIT_EYE
+        } else {
+            1.0
+        };
+        (share * differences / total.sqrt()) as f32
+    }
+
+    /// Shafts are best seen from the dark.
+    fn eye_is_lit(&self, tracer: &Tracer, lights: &[Emitter]) -> bool {
+        let eye = self.rays[self.rays.len() / 2].0.origin;
+        lights
+            .iter()
+            .filter_map(|light| Arrival::new(light, eye, self.diagonal))
+            .any(|arrival| !arrival.is_blocked(tracer, eye, self.margin))
     }
 
     /// Mean radiance scattered towards the eye by points along a ray, up to a factor.
-    fn in_scatter(
-        &self,
-        tracer: &Tracer,
-        ray: &Ray,
-        length: f64,
-        lights: &[Emitter],
-        seed: usize,
-    ) -> f64 {
-        // Neighbouring rays take their points at other depths, by the golden ratio.
-        let offset = (seed as f64 * 0.618_033_988_749_895).fract();
-        let points = (0..POINTS).map(|i| length * (f64::from(i) + offset) / f64::from(POINTS));
+    fn in_scatter(&self, tracer: &Tracer, ray: &Ray, length: f64, lights: &[Emitter]) -> f64 {
+        // At the same shares of every ray: noise between neighbours would pass for shafts.
+        let points = (0..POINTS).map(|i| length * (f64::from(i) + 0.5) / f64::from(POINTS));
         let sum: f64 = points
             .flat_map(|distance| lights.iter().map(move |light| (ray.at(distance), light)))
             .map(|(point, light)| {

@@ -58,7 +58,8 @@ fn index_types() {
     let order = [2u8, 0, 1, 1, 3, 2];
     let wide: Vec<u8> = order.iter().flat_map(|&i| [i, 0]).collect();
     let widest: Vec<u8> = order.iter().flat_map(|&i| [i, 0, 0, 0]).collect();
-    let cases: [(&str, Option<(u32, &[u8], usize)>, &[usize]); 4] = [
+    type Indices<'a> = Option<(u32, &'a [u8], usize)>;
+    let cases: [(&str, Indices<'_>, &[usize]); 4] = [
         ("none", None, &[0, 1, 2, 3, 4, 5]),
         ("u8", Some((U8, &order, 1)), &[2, 0, 1, 1, 3, 2]),
         ("u16", Some((U16, &wide, 2)), &[2, 0, 1, 1, 3, 2]),
@@ -125,7 +126,8 @@ fn sparse_accessors_replace_elements_of_their_base_or_of_zeros() {
 #[test]
 fn normals_are_normalised_or_made() {
     let shared: &[u8] = &[0, 1, 2, 2, 1, 0];
-    let cases: [(&str, Option<[f32; 9]>, &[Vec3]); 3] = [
+    type Normals = Option<[f32; 9]>;
+    let cases: [(&str, Normals, &[Vec3]); 3] = [
         (
             "given",
             Some([0.0, 0.0, 2.0, 0.0, 3.0, 0.0, 0.5, 0.0, 0.0]),
