@@ -17,7 +17,7 @@ pub(super) struct MaterialUniform {
     pub(super) cutoff: f32,
     pub(super) transmission: f32,
     pub(super) blended: u32,
-    pub(super) _pad: [u32; 2],
+    _pad: [u32; 2],
 }
 
 impl From<&Material> for MaterialUniform {

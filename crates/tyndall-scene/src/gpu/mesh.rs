@@ -341,7 +341,7 @@ mod tests {
     fn packing_fills_runs_up_to_the_limit() {
         for (sizes, limit, expected) in [
             (vec![], 10, vec![]),
-            (vec![10], 10, vec![0..1]),
+            (vec![10, 10], 10, vec![0..1, 1..2]),
             (vec![4, 6, 1], 10, vec![0..2, 2..3]),
             (vec![9, 9, 1, 9], 10, vec![0..1, 1..3, 3..4]),
         ] {

@@ -57,3 +57,105 @@ impl Shader {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use tyndall_testkit::{rust_layout, shader};
+
+    use super::*;
+    use crate::gpu::{
+        material::MaterialUniform,
+        uniforms::{ShadeLightUniform, ShadeViewUniform},
+        view::ViewUniform,
+    };
+
+    fn parse(shader: &Shader) -> shader::Shader {
+        shader::Shader::new(shader.files).unwrap_or_else(|error| panic!("{}: {error}", shader.name))
+    }
+
+    #[test]
+    fn all_shaders_are_valid() {
+        for shader in [
+            G_BUFFER,
+            VIEW_TINT,
+            SHADOW_MAP,
+            GLASS,
+            SHADE_BASE,
+            SHADE_LIGHT,
+        ] {
+            parse(&shader);
+        }
+    }
+
+    #[test]
+    fn uniforms_lie_as_the_shaders_read_them() {
+        let (mesh, light) = (parse(&G_BUFFER), parse(&SHADE_LIGHT));
+        for (shader, name, expected) in [
+            (
+                &mesh,
+                "View",
+                rust_layout!(ViewUniform {
+                    clip_from_relative,
+                    origin,
+                    viewer
+                }),
+            ),
+            (
+                &mesh,
+                "Material",
+                rust_layout!(MaterialUniform {
+                    base_color,
+                    emissive,
+                    cutoff,
+                    transmission,
+                    blended
+                }),
+            ),
+            (
+                &light,
+                "ShadeView",
+                rust_layout!(ShadeViewUniform {
+                    right,
+                    near,
+                    up,
+                    far,
+                    forward,
+                    reversed_depth,
+                    center,
+                    orthographic,
+                    sigma_t,
+                    ambient,
+                    sun,
+                    normal_offset,
+                    sky_horizon,
+                    light_radius,
+                    sky_zenith,
+                    ambient_tilt
+                }),
+            ),
+            (
+                &light,
+                "ShadeLight",
+                rust_layout!(ShadeLightUniform {
+                    color,
+                    kind,
+                    position,
+                    cos_inner,
+                    direction,
+                    cos_outer,
+                    edge_x,
+                    samples,
+                    edge_y,
+                    picture,
+                    picture_rows,
+                    clip_from_world,
+                    faces,
+                    standard_depth,
+                    glass_layers
+                }),
+            ),
+        ] {
+            assert_eq!(shader.struct_layout(name), Ok(expected), "{name}");
+        }
+    }
+}

@@ -18,7 +18,8 @@ use tyndall::{
 use super::view::reversed_depth;
 use crate::{
     shading::{
-        AMBIENT, NORMAL_OFFSET_TEXELS, RECT_SAMPLES, SKY_HORIZON, SKY_ZENITH, sun_illuminance,
+        AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_TEXELS, RECT_SAMPLES, SKY_HORIZON, SKY_ZENITH,
+        sun_illuminance,
     },
     trace::GLASS_LAYERS,
 };
@@ -27,22 +28,22 @@ use crate::{
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct ShadeViewUniform {
-    right: [f32; 3],
-    near: f32,
-    up: [f32; 3],
-    far: f32,
-    forward: [f32; 3],
-    reversed_depth: u32,
-    center: [f32; 3],
-    orthographic: u32,
-    sigma_t: [f32; 3],
-    ambient: f32,
-    sun: [f32; 3],
-    normal_offset: f32,
-    sky_horizon: [f32; 3],
-    light_radius: f32,
-    sky_zenith: [f32; 3],
-    _pad: f32,
+    pub(super) right: [f32; 3],
+    pub(super) near: f32,
+    pub(super) up: [f32; 3],
+    pub(super) far: f32,
+    pub(super) forward: [f32; 3],
+    pub(super) reversed_depth: u32,
+    pub(super) center: [f32; 3],
+    pub(super) orthographic: u32,
+    pub(super) sigma_t: [f32; 3],
+    pub(super) ambient: f32,
+    pub(super) sun: [f32; 3],
+    pub(super) normal_offset: f32,
+    pub(super) sky_horizon: [f32; 3],
+    pub(super) light_radius: f32,
+    pub(super) sky_zenith: [f32; 3],
+    pub(super) ambient_tilt: f32,
 }
 
 impl ShadeViewUniform {
@@ -80,7 +81,7 @@ impl ShadeViewUniform {
             sky_horizon: floats(SKY_HORIZON.into()),
             light_radius: LIGHT_RADIUS as f32,
             sky_zenith: floats(SKY_ZENITH.into()),
-            _pad: 0.0,
+            ambient_tilt: AMBIENT_TILT as f32,
         }
     }
 }
@@ -89,21 +90,21 @@ impl ShadeViewUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct ShadeLightUniform {
-    color: [f32; 3],
-    kind: u32,
-    position: [f32; 3],
-    cos_inner: f32,
-    direction: [f32; 3],
-    cos_outer: f32,
-    edge_x: [f32; 3],
-    samples: u32,
-    edge_y: [f32; 3],
-    picture: u32,
-    picture_rows: [[f32; 4]; 3],
-    clip_from_world: [[[f32; 4]; 4]; 6],
-    faces: u32,
-    standard_depth: u32,
-    glass_layers: u32,
+    pub(super) color: [f32; 3],
+    pub(super) kind: u32,
+    pub(super) position: [f32; 3],
+    pub(super) cos_inner: f32,
+    pub(super) direction: [f32; 3],
+    pub(super) cos_outer: f32,
+    pub(super) edge_x: [f32; 3],
+    pub(super) samples: u32,
+    pub(super) edge_y: [f32; 3],
+    pub(super) picture: u32,
+    pub(super) picture_rows: [[f32; 4]; 3],
+    pub(super) clip_from_world: [[[f32; 4]; 4]; 6],
+    pub(super) faces: u32,
+    pub(super) standard_depth: u32,
+    pub(super) glass_layers: u32,
     _pad: u32,
 }
 

@@ -19,7 +19,7 @@ pub(super) struct ViewUniform {
     pub(super) clip_from_relative: [[f32; 4]; 4],
     /// World-space point that vertices are taken relative to [m].
     pub(super) origin: [f32; 3],
-    pub(super) _pad: f32,
+    _pad: f32,
     /// Direction from a point to the viewer is `xyz - w * (point - origin)`.
     pub(super) viewer: [f32; 4],
 }

@@ -1,31 +1,29 @@
 //! Pictures of rectangles, known in closed form.
 
-use glam::{DMat4, DVec3, Vec3};
-use tyndall::frame::{Camera, Emitter, Projection, ShadowProjection};
+use glam::{Affine3A, DMat4, DVec3, Vec3};
+use tyndall::{
+    cpu::LightTexture,
+    frame::{Camera, Emitter, Projection, ShadowProjection},
+    gpu::PassTimer,
+};
 use tyndall_scene::{
-    gpu::{GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget, readback},
+    gpu::{
+        GBufferTargets, GlassMapTarget, GpuSceneError, SceneRenderer, ShadowMapTarget, connect,
+        readback, upload_light_texture,
+    },
     scene::{Blocking, Material, Scene},
 };
-use tyndall_testkit::device::{TestDevice, device_or_skip};
+use tyndall_testkit::{
+    device::{TestDevice, device_or_skip},
+    skip::skip,
+};
 
-use crate::scenes::{Builder, material, wall};
+use crate::{
+    scenes::{Builder, material, wall},
+    support::{read, record, renderer},
+};
 
-pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const RED: [f32; 4] = [0.8, 0.1, 0.05, 1.0];
-
-pub(crate) fn renderer(gpu: &TestDevice, scene: &Scene) -> SceneRenderer {
-    SceneRenderer::new(&gpu.device, &gpu.queue, scene, FORMAT).unwrap()
-}
-
-pub(crate) fn read(gpu: &TestDevice, texture: &wgpu::Texture) -> Vec<f32> {
-    readback::texture_f32(&gpu.device, &gpu.queue, texture).unwrap()
-}
-
-pub(crate) fn record(gpu: &TestDevice, passes: impl FnOnce(&mut wgpu::CommandEncoder)) {
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    passes(&mut encoder);
-    gpu.queue.submit([encoder.finish()]);
-}
 
 fn g_buffer(gpu: &TestDevice, scene: &Scene, camera: &Camera, size: [u32; 2]) -> GBufferTargets {
     let targets = GBufferTargets::new(&gpu.device, size).unwrap();
@@ -195,12 +193,15 @@ fn masked_surfaces_have_holes() {
     };
     let targets = g_buffer(gpu, &scene, &camera(true, true), [8; 2]);
     expect(&read(gpu, targets.depth()));
-    let sun = Emitter::Directional {
-        direction: [0.0, 0.0, -1.0],
-        illuminance: [1.0; 3],
-    };
+    let sun = SUN;
     expect(&shadow_map(gpu, &scene, &sun, &sun_projection(true), 8));
 }
+
+/// Along -Z.
+const SUN: Emitter = Emitter::Directional {
+    direction: [0.0, 0.0, -1.0],
+    illuminance: [1.0; 3],
+};
 
 /// An orthographic map along -Z of |x|, |y| <= 4 and z from 0 to -16.
 fn sun_projection(reversed_depth: bool) -> ShadowProjection {
@@ -325,10 +326,7 @@ fn glass_is_peeled_from_the_light_on() {
         )
         .build();
 
-    let sun = Emitter::Directional {
-        direction: [0.0, 0.0, -1.0],
-        illuminance: [1.0; 3],
-    };
+    let sun = SUN;
     for reversed in [false, true] {
         let projection = sun_projection(reversed);
         let shadow = ShadowMapTarget::new(&gpu.device, &projection, [8; 2]).unwrap();
@@ -439,4 +437,96 @@ fn clear_glass_is_no_glass() {
             .build();
         assert_eq!(renderer(gpu, &scene).has_tinted_glass(), expected, "{what}");
     }
+}
+
+/// A node that moves takes its triangles along.
+#[test]
+fn nodes_move() {
+    let Some(gpu) = device_or_skip("moving nodes") else {
+        return;
+    };
+    let (corner, edges) = wall(5.0, 0.0);
+    let mut scene = Builder::default()
+        .rectangle(corner, edges, material(RED, Blocking::Opaque))
+        .build();
+    let renderer = renderer(gpu, &scene);
+    let targets = GBufferTargets::new(&gpu.device, [4; 2]).unwrap();
+    let camera = camera(false, false);
+    for z in [2.0, 4.0] {
+        scene.nodes[0].parent_from_local = Affine3A::from_translation(Vec3::new(0.0, 0.0, -z));
+        renderer.place(&gpu.queue, &scene);
+        record(gpu, |encoder| {
+            renderer.g_buffer(encoder, &targets, &camera, None);
+        });
+        let depth = read(gpu, targets.depth())[5];
+        assert!((depth - (z - 0.5) / 49.5).abs() < 2e-7, "{depth} at {z} m");
+    }
+}
+
+#[test]
+fn passes_are_timed_by_name() {
+    let Some(gpu) = device_or_skip("pass names") else {
+        return;
+    };
+    let Some(mut timer) = PassTimer::new(&gpu.device, 16) else {
+        return skip("pass names", "the device has no timestamps");
+    };
+    let renderer = renderer(gpu, &Scene::default());
+    let targets = GBufferTargets::new(&gpu.device, [4; 2]).unwrap();
+    let (projection, sun) = (sun_projection(true), SUN);
+    let shadow = ShadowMapTarget::new(&gpu.device, &projection, [4; 2]).unwrap();
+    record(gpu, |encoder| {
+        renderer.g_buffer(encoder, &targets, &camera(true, true), Some(&mut timer));
+        renderer.shadow_map(encoder, &shadow, &sun, &projection, Some(&mut timer));
+    });
+    assert_eq!(timer.names(), ["g-buffer", "view tint", "shadow map"]);
+}
+
+#[test]
+fn sizes_are_checked_against_the_device() {
+    let Some(gpu) = device_or_skip("texture sizes") else {
+        return;
+    };
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    for size in [[0, 4], [4, 0], [limit + 1, 4]] {
+        let error = GBufferTargets::new(&gpu.device, size).err().unwrap();
+        let GpuSceneError::TextureSize { size: found, .. } = error else {
+            panic!("{error}");
+        };
+        assert_eq!(found, size);
+        assert!(ShadowMapTarget::new(&gpu.device, &sun_projection(true), size).is_err());
+    }
+    let short = LightTexture {
+        size: [2, 2],
+        texels: vec![[1.0; 3]; 3],
+    };
+    let error = upload_light_texture(&gpu.device, &gpu.queue, &short).err();
+    assert_eq!(
+        error.unwrap().to_string(),
+        "light texture must have 4 texels, found 3"
+    );
+}
+
+#[test]
+fn a_format_that_cannot_blend_is_refused() {
+    let Some(gpu) = device_or_skip("target formats") else {
+        return;
+    };
+    let format = wgpu::TextureFormat::Rgba32Uint;
+    let error = SceneRenderer::new(&gpu.device, &gpu.queue, &Scene::default(), format).err();
+    assert_eq!(error, Some(GpuSceneError::TargetFormat { format }));
+}
+
+#[test]
+fn a_device_is_found_where_there_is_one() {
+    if device_or_skip("connect").is_none() {
+        return;
+    }
+    let (adapter, device, _) = connect(wgpu::PowerPreference::HighPerformance).unwrap();
+    let (found, offered) = (device.limits(), adapter.limits());
+    assert_eq!(
+        found.max_texture_dimension_2d,
+        offered.max_texture_dimension_2d
+    );
+    assert_eq!(found.max_buffer_size, offered.max_buffer_size);
 }

@@ -1,6 +1,7 @@
-//! Hand-made scenes whose pictures are known.
+//! Hand-made scenes, and cameras and lights among them.
 
-use glam::{Affine3A, Quat, Vec2, Vec3, vec2};
+use glam::{Affine3A, DMat4, DVec3, Quat, Vec2, Vec3, dcamera::rh, vec2};
+use tyndall::frame::{Camera, Emitter, Projection, ShadowProjection};
 use tyndall_scene::scene::{Blocking, Material, Mesh, Node, Primitive, Scene, Texture, Wrap};
 use tyndall_testkit::samples::in_box;
 
@@ -86,7 +87,7 @@ pub(crate) fn wall(half: f32, z: f32) -> (Vec3, [Vec3; 2]) {
 pub(crate) fn clutter(rectangles: usize) -> Scene {
     let checks = |x: u32, y: u32| {
         let [r, g, b] = [17 * x, 17 * y, 120 + 60 * ((x / 2 + y / 2) % 2)].map(|v| v as u8);
-        [r, g, b, if (x / 4 + y / 4) % 2 == 0 { 255 } else { 40 }]
+        [r, g, b, [255, 40][((x / 4 + y / 4) % 2) as usize]]
     };
     let kinds = [
         Blocking::Opaque,
@@ -118,4 +119,87 @@ pub(crate) fn clutter(rectangles: usize) -> Scene {
         );
     }
     scene
+}
+
+/// Cameras of all kinds among the clutter.
+pub(crate) fn cameras() -> Vec<(&'static str, Camera)> {
+    let perspective = Projection::Perspective {
+        half_extent: [0.8, 0.6],
+        center: [0.1, -0.05],
+        near: 0.1,
+        far: 40.0,
+    };
+    let orthographic = Projection::Orthographic {
+        half_extent: [4.0, 3.0],
+        center: [0.5, 0.2],
+        near: -1.0,
+        far: 30.0,
+    };
+    [
+        ("perspective", perspective, false),
+        ("perspective reversed", perspective, true),
+        ("orthographic", orthographic, false),
+        ("orthographic reversed", orthographic, true),
+    ]
+    .map(|(name, projection, reversed_depth)| {
+        let camera = Camera {
+            eye: [1.0, 2.0, 9.0],
+            forward: [-0.1, -0.2, -1.0],
+            up: [0.1, 1.0, 0.0],
+            projection,
+            reversed_depth,
+        };
+        (name, camera)
+    })
+    .into()
+}
+
+/// Lights of all kinds that have shadow maps.
+pub(crate) fn lights_with_maps() -> Vec<(&'static str, Emitter, ShadowProjection)> {
+    let position = [0.5, 0.7, 1.0];
+    let single = |clip_from_world: DMat4, reversed_depth| ShadowProjection::Single {
+        clip_from_world: clip_from_world.as_mat4().to_cols_array_2d(),
+        reversed_depth,
+    };
+    let cube = |reversed_depth| ShadowProjection::Cube {
+        near: 0.2,
+        far: 30.0,
+        reversed_depth,
+    };
+    let sun = Emitter::Directional {
+        direction: [-0.3, -1.0, -0.5],
+        illuminance: [1.0; 3],
+    };
+    let sun_view = rh::view::look_to_mat4(
+        DVec3::new(3.0, 12.0, 6.0),
+        DVec3::new(-0.3, -1.0, -0.5),
+        DVec3::X,
+    );
+    let ortho =
+        |near, far| rh::proj::directx::orthographic(-9.0, 9.0, -8.0, 8.0, near, far) * sun_view;
+    let spot = Emitter::Spot {
+        position,
+        direction: [0.2, 0.1, -1.0],
+        intensity: [1.0; 3],
+        inner: 0.1,
+        outer: 0.7,
+    };
+    let spot_view = rh::view::look_to_mat4(
+        DVec3::from(position.map(f64::from)),
+        DVec3::new(0.2, 0.1, -1.0),
+        DVec3::Y,
+    );
+    let point = Emitter::Point {
+        position,
+        intensity: [1.0; 3],
+    };
+    let fov = |near, far| rh::proj::directx::perspective(1.4, 1.0, near, far) * spot_view;
+    vec![
+        ("sun", sun, single(ortho(0.5, 40.0), false)),
+        ("sun reversed", sun, single(ortho(40.0, 0.5), true)),
+        ("spot", spot, single(fov(0.2, 30.0), false)),
+        ("spot reversed", spot, single(fov(30.0, 0.2), true)),
+        ("point", point, cube(false)),
+        ("point reversed", point, cube(true)),
+    ]
 }

@@ -13,7 +13,7 @@ fn shade_light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4
     if any(irradiance > vec3f(0.0)) {
         irradiance *= shade_visibility(point, normal);
     }
-    irradiance += shade_ambient(point);
+    irradiance += shade_ambient(point, normal);
     let albedo = textureLoad(shade_base_color, pixel, 0).rgb;
     let tint = textureLoad(shade_view_tint, pixel, 0).rgb;
     return vec4f(tint * albedo / SHADE_PI * irradiance, 0.0);

@@ -140,8 +140,9 @@ fn shade_direct(point: vec3f, normal: vec3f) -> vec3f {
 }
 
 // Irradiance from all around: the light without its cone, picture and shadow, dimmed [W/m^2].
-fn shade_ambient(point: vec3f) -> vec3f {
-    let color = shade_view.ambient * shade_light.color;
+fn shade_ambient(point: vec3f, normal: vec3f) -> vec3f {
+    let ambient = shade_view.ambient * (1.0 + shade_view.ambient_tilt * normal.y);
+    let color = ambient * shade_light.color;
     if shade_light.kind == SHADE_DIRECTIONAL {
         return color;
     }

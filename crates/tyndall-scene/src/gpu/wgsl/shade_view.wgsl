@@ -27,6 +27,8 @@ struct ShadeView {
     // A point light's radius, inside which 1 / d^2 grows no further [m].
     light_radius: f32,
     sky_zenith: vec3f,
+    // How much more of `ambient` falls on what faces up, and less on what faces down.
+    ambient_tilt: f32,
 }
 
 @group(0) @binding(0) var<uniform> shade_view: ShadeView;

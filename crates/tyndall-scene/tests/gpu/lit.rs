@@ -1,0 +1,217 @@
+//! Lit surfaces against the CPU's.
+
+use tyndall::{
+    LightInputs,
+    cpu::{CpuLightInputs, GlassMap, LightTexture, ShadowMap},
+    frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase, TexturePlacement},
+    techniques::Technique,
+};
+use tyndall_scene::{
+    gpu::{GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget, upload_light_texture},
+    shading::shade,
+    trace::{GBuffer, GLASS_LAYERS, Tracer},
+};
+use tyndall_testkit::device::{TestDevice, device_or_skip};
+
+use crate::{
+    scenes::{cameras, clutter, lights_with_maps},
+    support::{channels, color_target, read, record, rel_mae, renderer},
+};
+
+/// The same scene under every kind of light, lit on both sides from the same maps but for rasterisation.
+#[test]
+fn lit_surfaces_are_the_cpus() {
+    let Some(gpu) = device_or_skip("lit surfaces against the CPU's") else {
+        return;
+    };
+    let mut scene = clutter(200);
+    // What glows of itself would outshine the differences.
+    for material in &mut scene.materials {
+        material.emissive = [0.0; 3];
+    }
+    let (renderer, tracer) = (renderer(gpu, &scene), Tracer::new(&scene));
+    let size = [160, 120];
+    let g_buffer = GBufferTargets::new(&gpu.device, size).unwrap();
+    let target = color_target(gpu, size);
+    let view = target.create_view(&Default::default());
+    let lights: Vec<_> = shaded_lights()
+        .into_iter()
+        .map(|(name, light)| (name, light, LightMaps::new(gpu, &renderer, &tracer, &light)))
+        .collect();
+    for (camera_name, camera) in cameras() {
+        record(gpu, |encoder| {
+            renderer.g_buffer(encoder, &g_buffer, &camera, None)
+        });
+        // Of the same G-buffer: this is about lighting alone.
+        let cpu_g_buffer = read_g_buffer(gpu, &g_buffer);
+        for (name, light, maps) in &lights {
+            let frame = frame(camera, *light);
+            record(gpu, |encoder| {
+                renderer.shade(encoder, &view, &g_buffer, &frame, &[maps.gpu()], None);
+            });
+            let found = channels(&read(gpu, &target), 4, 3);
+            let expected = shade(&cpu_g_buffer, &frame, &[maps.cpu()]).concat();
+            assert!(found.iter().all(|v| v.is_finite()));
+            let error = rel_mae(&found, &expected, size);
+            // lavapipe: 4.0e-4 at most with a shadow map, where a texel's depth is that of the point itself within
+            // rounding or glass tints have 10 bits; 6e-7 without.
+            let bound = if light.shadow.is_some() { 1e-3 } else { 2e-6 };
+            eprintln!("{camera_name} {name}: relMAE {error:.2e}");
+            assert!(error < bound, "{camera_name} {name}: relMAE {error:.2e}");
+        }
+    }
+}
+
+fn frame(camera: Camera, light: Light) -> Frame {
+    let air = MediumComponent {
+        sigma_s: [0.02, 0.03, 0.05],
+        sigma_a: [0.01, 0.0, 0.0],
+        phase: Phase::Isotropic,
+    };
+    Frame {
+        camera,
+        lights: vec![light],
+        medium: Medium {
+            components: vec![air],
+        },
+        technique: Technique::from_name("ray-march").unwrap(),
+    }
+}
+
+fn read_g_buffer(gpu: &TestDevice, targets: &GBufferTargets) -> GBuffer {
+    let color = |texture| {
+        let texels = read(gpu, texture);
+        texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect()
+    };
+    GBuffer {
+        size: targets.size(),
+        depth: read(gpu, targets.depth()),
+        normal: color(targets.normal()),
+        base_color: color(targets.base_color()),
+        emissive: color(targets.emissive()),
+        view_tint: color(targets.view_tint()),
+    }
+}
+
+/// A light's pictures on both sides; the shadow map is the GPU's, so that edges don't differ.
+struct LightMaps {
+    shadow: Option<(ShadowMapTarget, ShadowMap)>,
+    glass: Option<(GlassMapTarget, GlassMap)>,
+    texture: Option<(wgpu::TextureView, LightTexture)>,
+}
+
+impl LightMaps {
+    fn new(gpu: &TestDevice, renderer: &SceneRenderer, tracer: &Tracer, light: &Light) -> Self {
+        let size = [128; 2];
+        let texture = light.texture.map(|_| {
+            let texel = |i: usize| [i as f32, (i % 5) as f32, 1.0];
+            let texture = LightTexture {
+                size: [5, 4],
+                texels: (0..20).map(texel).collect(),
+            };
+            let uploaded = upload_light_texture(&gpu.device, &gpu.queue, &texture).unwrap();
+            (uploaded.create_view(&Default::default()), texture)
+        });
+        let Some(projection) = light.shadow else {
+            return Self {
+                shadow: None,
+                glass: None,
+                texture,
+            };
+        };
+        let shadow = ShadowMapTarget::new(&gpu.device, &projection, size).unwrap();
+        let glass = GlassMapTarget::new(&gpu.device, &shadow).unwrap();
+        record(gpu, |encoder| {
+            renderer.shadow_map(encoder, &shadow, &light.emitter, &projection, None);
+            renderer.glass_map(encoder, &glass, &shadow, &light.emitter, &projection, None);
+        });
+        let map = ShadowMap {
+            size,
+            depth: read(gpu, shadow.texture()),
+        };
+        let cpu_glass = tracer
+            .glass_map(&light.emitter, &projection, size, GLASS_LAYERS, &|_, _| ())
+            .unwrap();
+        Self {
+            shadow: Some((shadow, map)),
+            glass: Some((glass, cpu_glass)),
+            texture,
+        }
+    }
+
+    fn gpu(&self) -> LightInputs<'_> {
+        LightInputs {
+            shadow_map: self.shadow.as_ref().map(|(target, _)| target.view()),
+            glass: self.glass.as_ref().map(|(target, _)| target.view()),
+            texture: self.texture.as_ref().map(|(view, _)| view),
+        }
+    }
+
+    fn cpu(&self) -> CpuLightInputs<'_> {
+        CpuLightInputs {
+            shadow_map: self.shadow.as_ref().map(|(_, map)| map),
+            glass: self.glass.as_ref().map(|(_, map)| map),
+            texture: self.texture.as_ref().map(|(_, texture)| texture),
+        }
+    }
+}
+
+/// Lights of every kind, with and without shadows and textures.
+fn shaded_lights() -> Vec<(&'static str, Light)> {
+    let plain = |emitter| Light {
+        emitter,
+        shadow: None,
+        texture: None,
+    };
+    let rect = Emitter::Rect {
+        center: [0.0, 5.0, 1.0],
+        edge_x: [2.0, 0.0, 0.0],
+        edge_y: [0.0, 0.0, 1.0],
+        radiance: [3.0, 2.0, 1.0],
+        samples: 64,
+    };
+    let picture = |emitter: &Emitter| match emitter {
+        Emitter::Directional { .. } => TexturePlacement::Parallelogram {
+            center: [0.0; 3],
+            edge_x: [6.0, 0.0, 1.0],
+            edge_y: [0.0, 0.0, 6.0],
+        },
+        Emitter::Spot { .. } => TexturePlacement::Cone {
+            up: [0.0, 1.0, 0.0],
+        },
+        Emitter::Point { .. } => TexturePlacement::Sphere {
+            up: [0.0, 1.0, 0.2],
+            forward: [1.0, 0.0, 0.0],
+        },
+        Emitter::Rect { .. } => TexturePlacement::Rectangle,
+    };
+    let mut lights = vec![
+        ("rect", plain(rect)),
+        (
+            "textured rect",
+            Light {
+                texture: Some(picture(&rect)),
+                ..plain(rect)
+            },
+        ),
+    ];
+    for (name, emitter, projection) in lights_with_maps() {
+        let shadowed = Light {
+            shadow: Some(projection),
+            ..plain(emitter)
+        };
+        lights.push((name, shadowed));
+        if name.ends_with("reversed") {
+            continue;
+        }
+        lights.push(("unshadowed", plain(emitter)));
+        lights.push((
+            "textured",
+            Light {
+                texture: Some(picture(&emitter)),
+                ..shadowed
+            },
+        ));
+    }
+    lights
+}

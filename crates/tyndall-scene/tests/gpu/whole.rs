@@ -1,0 +1,161 @@
+//! Whole scenes, rasterised and lit on the GPU, traced and lit on the CPU: each with its own G-buffer and light maps.
+
+use std::path::Path;
+
+use tyndall::{
+    LightInputs,
+    cpu::CpuLightInputs,
+    frame::{Frame, Light},
+    techniques::Technique,
+};
+use tyndall_scene::{
+    builtin::builtin,
+    framing::{Framing, frame_scene},
+    gpu::{GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget},
+    load::load,
+    scene::Scene,
+    shading::shade,
+    shadow_fit::fit,
+    trace::{GLASS_LAYERS, Tracer},
+};
+use tyndall_testkit::{
+    device::{TestDevice, device_or_skip},
+    skip::skip,
+};
+
+use crate::support::{channels, color_target, differing, read, record, rel_mae, renderer};
+
+const SIZE: [u32; 2] = [160, 120];
+const MAP_SIZE: u32 = 256;
+
+/// The first light that has a shadow map, as the scene's own framing has it.
+fn frame(framing: &Framing, tracer: &Tracer) -> Frame {
+    let light = framing.lights.iter().map(|&emitter| Light {
+        emitter,
+        shadow: fit(tracer.geometry(), &emitter),
+        texture: None,
+    });
+    Frame {
+        camera: framing.camera,
+        lights: light.take(1).collect(),
+        medium: framing.medium.clone(),
+        technique: Technique::from_name("ray-march").unwrap(),
+    }
+}
+
+/// Linear RGB on the GPU, and its depth.
+fn rasterised(gpu: &TestDevice, renderer: &SceneRenderer, frame: &Frame) -> [Vec<f32>; 2] {
+    let light = frame.lights[0];
+    let g_buffer = GBufferTargets::new(&gpu.device, SIZE).unwrap();
+    let target = color_target(gpu, SIZE);
+    let view = target.create_view(&Default::default());
+    let shadow = light.shadow.map(|projection| {
+        let target = ShadowMapTarget::new(&gpu.device, &projection, [MAP_SIZE; 2]).unwrap();
+        (projection, target)
+    });
+    let glass = shadow
+        .as_ref()
+        .filter(|_| renderer.has_tinted_glass())
+        .map(|(_, shadow)| GlassMapTarget::new(&gpu.device, shadow).unwrap());
+    record(gpu, |encoder| {
+        if let Some((projection, shadow)) = &shadow {
+            renderer.shadow_map(encoder, shadow, &light.emitter, projection, None);
+            if let Some(glass) = &glass {
+                renderer.glass_map(encoder, glass, shadow, &light.emitter, projection, None);
+            }
+        }
+        let inputs = LightInputs {
+            shadow_map: shadow.as_ref().map(|(_, shadow)| shadow.view()),
+            glass: glass.as_ref().map(GlassMapTarget::view),
+            texture: None,
+        };
+        renderer.g_buffer(encoder, &g_buffer, &frame.camera, None);
+        renderer.shade(encoder, &view, &g_buffer, frame, &[inputs], None);
+    });
+    [
+        channels(&read(gpu, &target), 4, 3),
+        read(gpu, g_buffer.depth()),
+    ]
+}
+
+/// The same, traced on the CPU.
+fn traced(tracer: &Tracer, frame: &Frame) -> [Vec<f32>; 2] {
+    let quiet = |_, _| ();
+    let light = frame.lights[0];
+    let size = [MAP_SIZE; 2];
+    let shadow = light
+        .shadow
+        .map(|p| tracer.shadow_map(&light.emitter, &p, size, &quiet));
+    let glass = light
+        .shadow
+        .and_then(|p| tracer.glass_map(&light.emitter, &p, size, GLASS_LAYERS, &quiet));
+    let inputs = CpuLightInputs {
+        shadow_map: shadow.as_ref(),
+        glass: glass.as_ref(),
+        texture: None,
+    };
+    let g_buffer = tracer.g_buffer(&frame.camera, SIZE, &quiet);
+    let picture = shade(&g_buffer, frame, &[inputs]);
+    [picture.concat(), g_buffer.depth]
+}
+
+/// Checks that the pictures' relMAE is below `bound`.
+fn check(gpu: &TestDevice, name: &str, scene: &Scene, bound: f64) {
+    let tracer = Tracer::new(scene);
+    let framing = frame_scene(scene, &tracer, SIZE[0] as f32 / SIZE[1] as f32);
+    let frame = frame(&framing, &tracer);
+    let renderer = renderer(gpu, scene);
+    assert_eq!(
+        renderer.has_tinted_glass(),
+        tracer.has_tinted_glass(),
+        "{name}"
+    );
+    let [found, found_depth] = rasterised(gpu, &renderer, &frame);
+    let [expected, expected_depth] = traced(&tracer, &frame);
+    let (edges, rest) = differing(&found_depth, &expected_depth, 1e-5);
+    let error = rel_mae(&found, &expected, SIZE);
+    eprintln!(
+        "{name}: relMAE {error:.2e}; {edges:.1e} of the depths differ, the others by {rest:.1e}"
+    );
+    assert!(
+        error < bound && edges < 5e-3,
+        "{name}: relMAE {error}, {edges} of the depths differ"
+    );
+}
+
+#[test]
+fn built_in_scenes_are_the_cpus() {
+    let Some(gpu) = device_or_skip("built-in scenes against the CPU's") else {
+        return;
+    };
+    // lavapipe: 1.2e-3, 3.5e-3 (leaves are all edges), 2.6e-4, 1.5e-3, 3.5e-8; at most 1.9e-3 of the depths.
+    for (name, bound) in [
+        ("church", 4e-3),
+        ("forest", 1e-2),
+        ("terrain", 1e-3),
+        ("slats", 4e-3),
+        ("empty", 1e-6),
+    ] {
+        check(gpu, name, &builtin(name).unwrap(), bound);
+    }
+}
+
+#[test]
+fn shared_scenes_are_the_cpus() {
+    let Some(gpu) = device_or_skip("the shared scenes against the CPU's") else {
+        return;
+    };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
+    // lavapipe: 3.7e-4, 2.1e-4, 6.4e-5.
+    for (name, bound) in [("sibenik", 2e-3), ("hall", 2e-3), ("terrain", 5e-4)] {
+        let path = folder.join(name).with_extension("glb");
+        if path.exists() {
+            check(gpu, name, &load(&path).unwrap(), bound);
+        } else {
+            skip(
+                "the shared scenes against the CPU's",
+                &format!("no {name}.glb"),
+            );
+        }
+    }
+}
