@@ -1,5 +1,10 @@
 //! The `tyndall` command from outside: exit codes, messages, and the files it writes or doesn't.
 
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers say what went wrong by panicking, too"
+)]
+
 use std::{
     path::Path,
     process::{Command, Output},
