@@ -7,8 +7,7 @@ use std::{
 
 use image::ImageReader;
 use tyndall::cpu::LightTexture;
-
-use crate::picture::linear_from_srgb;
+use tyndall_scene::texture::linear_from_srgb;
 
 /// The most texels a side.
 const MAX_SIDE: usize = 8192;
@@ -84,7 +83,7 @@ fn load_srgb(file: &Path) -> Result<LightTexture, TextureError> {
         size: [picture.width(), picture.height()],
         texels: picture
             .pixels()
-            .map(|pixel| pixel.0.map(linear_from_srgb))
+            .map(|pixel| pixel.0.map(|x| linear_from_srgb(x.into()) as f32))
             .collect(),
     })
 }

@@ -1,14 +1,14 @@
 //! From a shot to what the backends render: the scene, its acceleration structure, the frame and the lights' pictures.
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use tyndall::{
     cpu::LightTexture,
-    frame::{Camera, Emitter, Frame, Light, Medium},
+    frame::{Camera, Frame, Light, Medium},
 };
 use tyndall_scene::{
     builtin,
     framing::{self, Framing},
-    geometry::{Bounds, world_from_nodes},
+    geometry::Bounds,
     load,
     scene::Scene,
     shadow_fit,
@@ -117,10 +117,7 @@ fn needs_framing(shot: &Shot) -> bool {
 fn lights(shot: &Shot, framing: Option<&Framing>) -> Result<Vec<LightSpec>, ShotError> {
     match (&shot.lights, framing) {
         (Some(lights), _) => Ok(lights.clone()),
-        (None, Some(framing)) => {
-            let emitters: Vec<Emitter> = framing.lights.clone();
-            shot.scene_lights(&emitters)
-        }
+        (None, Some(framing)) => shot.scene_lights(&framing.lights),
         (None, None) => Ok(Vec::new()),
     }
 }
@@ -144,7 +141,7 @@ fn camera(
 ) -> Result<Camera, ShotError> {
     let bounds = tracer.geometry().bounds();
     let cameras = SceneCameras {
-        named: &named_cameras(scene),
+        named: &framing::cameras(scene, aspect),
         framed: framing.map(|framing| framing.camera),
         farthest: &|eye| bounds.map_or(0.0, |bounds| farthest(&bounds, eye.into())),
     };
@@ -156,24 +153,6 @@ fn farthest(bounds: &Bounds, eye: Vec3) -> f32 {
         .abs()
         .max((bounds.max - eye).abs())
         .length()
-}
-
-/// The scene's cameras with the names of their nodes.
-pub fn named_cameras(scene: &Scene) -> Vec<(String, Camera)> {
-    let placed = scene.nodes.iter().zip(world_from_nodes(scene));
-    placed
-        .filter_map(|(node, world)| Some((node.name.clone(), place_camera(node.camera?, world))))
-        .collect()
-}
-
-fn place_camera(projection: tyndall::frame::Projection, world: Affine3A) -> Camera {
-    Camera {
-        eye: world.translation.into(),
-        forward: world.transform_vector3(Vec3::NEG_Z).into(),
-        up: world.transform_vector3(Vec3::Y).into(),
-        projection,
-        reversed_depth: true,
-    }
 }
 
 fn light(spec: &LightSpec, tracer: &Tracer) -> Light {

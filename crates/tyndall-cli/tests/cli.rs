@@ -1,12 +1,17 @@
 //! The `tyndall` command from outside: exit codes, messages, and the files it writes or doesn't.
 
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test's helpers say what went wrong by panicking, too"
+)]
+
 use std::{
     path::Path,
     process::{Command, Output},
 };
 
 use tempfile::TempDir;
-use tyndall_testkit::picture::Picture;
+use tyndall_testkit::{device, metrics::compare, picture::Picture};
 
 /// A shot of a scene that is there, with nothing wrong in it.
 const SHOT: &str = r#"scene = "builtin:empty"
@@ -326,6 +331,42 @@ fn without_a_driver_the_cpu_gives_the_same_picture() {
     );
     let read = |name: &str| Picture::read_exr(&folder.path().join(name)).unwrap();
     assert_eq!(read("auto.exr"), read("cpu.exr"));
+}
+
+/// Surfaces, glass, sky and medium of a scene that has them all.
+#[test]
+fn gpu_and_cpu_give_the_same_picture() {
+    if device::device_or_skip("gpu_and_cpu_give_the_same_picture").is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let render = |backend: &str, layer: &str| {
+        let file = format!("{backend}-{layer}.exr");
+        let sets = ["size=[96,54]", "light.0.shadow_map=512"];
+        let [size, map] = sets.map(|set| format!("--set={set}"));
+        let arguments = [
+            "render",
+            "builtin:church",
+            "--backend",
+            backend,
+            "--layer",
+            layer,
+        ];
+        let arguments = [&arguments[..], &["-o", &file, &size, &map]].concat();
+        let output = tyndall(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        Picture::read_exr(&folder.path().join(file)).unwrap()
+    };
+    for (layer, bound) in [
+        ("depth", 1e-3),
+        ("inscatter", 0.01),
+        ("surface", 0.05),
+        ("final", 0.03),
+    ] {
+        let error = compare(&render("gpu", layer), &render("cpu", layer)).unwrap();
+        eprintln!("{layer}: relMAE {:.5}", error.rel_mae);
+        assert!(error.rel_mae <= bound, "{layer}: {}", error.rel_mae);
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use tyndall::{
     techniques::{Backends, TABLE, TechniqueInfo},
 };
 use tyndall_scene::{
-    builtin,
+    builtin, framing,
     geometry::Geometry,
     scene::{Blocking, Scene},
 };
@@ -167,50 +167,62 @@ fn write_materials(text: &mut String, scene: &Scene) -> std::fmt::Result {
 }
 
 fn write_lights(text: &mut String, scene: &Scene) -> std::fmt::Result {
-    for node in &scene.nodes {
-        let what = match node.light {
-            None => continue,
-            Some(Emitter::Directional { illuminance, .. }) => {
-                format!("directional, {illuminance:?} W/m^2")
-            }
-            Some(Emitter::Point { intensity, .. }) => format!("point, {intensity:?} W/sr"),
-            Some(Emitter::Spot {
+    for (name, emitter) in framing::lights(scene) {
+        let what = match emitter {
+            Emitter::Directional {
+                direction,
+                illuminance,
+            } => format!("directional along {direction:?}, {illuminance:?} W/m^2"),
+            Emitter::Point {
+                position,
+                intensity,
+            } => format!("point at {position:?}, {intensity:?} W/sr"),
+            Emitter::Spot {
+                position,
+                direction,
                 intensity,
                 inner,
                 outer,
-                ..
-            }) => format!("spot, {intensity:?} W/sr, {inner} to {outer} rad"),
-            Some(Emitter::Rect { radiance, .. }) => format!("rect, {radiance:?} W/(m^2 sr)"),
+            } => format!(
+                "spot at {position:?} along {direction:?}, {intensity:?} W/sr, {inner} to {outer} rad"
+            ),
+            Emitter::Rect {
+                center, radiance, ..
+            } => format!("rect at {center:?}, {radiance:?} W/(m^2 sr)"),
         };
-        writeln!(text, "  light `{}`: {what}", node.name)?;
+        writeln!(text, "  light `{name}`: {what}")?;
     }
     Ok(())
 }
 
 fn write_cameras(text: &mut String, scene: &Scene) -> std::fmt::Result {
-    for node in &scene.nodes {
-        let what = match node.camera {
-            None => continue,
-            Some(Projection::Perspective {
+    for (name, camera) in framing::cameras(scene, 1.0) {
+        let (what, near, far) = match camera.projection {
+            Projection::Perspective {
                 half_extent,
                 near,
                 far,
                 ..
-            }) => {
+            } => {
                 let yfov = 2.0 * half_extent[1].atan().to_degrees();
-                format!("perspective, yfov {yfov:.1} degrees, {near} to {far} m")
+                (format!("perspective, yfov {yfov:.1} degrees"), near, far)
             }
-            Some(Projection::Orthographic {
+            Projection::Orthographic {
                 half_extent,
                 near,
                 far,
                 ..
-            }) => format!(
-                "orthographic, {} m high, {near} to {far} m",
-                2.0 * half_extent[1]
+            } => (
+                format!("orthographic, {} m high", 2.0 * half_extent[1]),
+                near,
+                far,
             ),
         };
-        writeln!(text, "  camera `{}`: {what}", node.name)?;
+        writeln!(
+            text,
+            "  camera `{name}`: {what}, from {near} to {far} m, at {:?}",
+            camera.eye
+        )?;
     }
     Ok(())
 }

@@ -4,15 +4,15 @@ use super::{Picture, luminance};
 
 /// Where the mean of the middle tones goes: middle grey (Reinhard et al. 2002, "Photographic Tone Reproduction").
 const KEY: f32 = 0.18;
-/// The share of pixels, from the brightest down, that may be clipped nearly to white (lamps, the sun's disc).
-const HIGHLIGHT_SHARE: f32 = 0.01;
+/// The share of pixels, from the brightest down, that may be clipped nearly to white (lamps, windows).
+const HIGHLIGHT_SHARE: f32 = 0.03;
 /// How bright the rest may get after exposure: the tone mapper shows 2.5 as 0.97.
 const HIGHLIGHT: f32 = 2.5;
 /// Pixels darker than this fraction of the highlight count as that dark: black holes don't brighten the picture.
 const FLOOR: f32 = 1e-3;
 
 /// The exposure [EV] that shows this picture well: the logarithmic mean of its luminance goes to middle grey,
-/// unless that would burn out more than the brightest hundredth. 0 for a black picture.
+/// unless that would burn out more than the brightest few percent. 0 for a black picture.
 pub fn automatic_exposure(picture: &Picture) -> f32 {
     let mut values: Vec<f32> = picture
         .pixels
@@ -70,7 +70,7 @@ mod tests {
             4 => f32::INFINITY,
             _ => 1.0,
         });
-        // Measured: 0.06 EV.
+        // Measured: 0.04 EV.
         assert!((automatic_exposure(&picture(lamps)) - even).abs() < 0.1);
     }
 

@@ -8,6 +8,7 @@ pub use exposure::automatic_exposure;
 pub use tone::pbr_neutral;
 
 use dither::quantize;
+use tyndall_scene::texture::srgb_from_linear;
 
 /// Linear RGB, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,28 +38,14 @@ fn encode_with(picture: &Picture, map: impl Fn([f32; 3]) -> [f32; 3]) -> Vec<[u8
         .enumerate()
         .map(|(index, pixel)| {
             let position = [(index % width) as u32, (index / width) as u32];
-            map(*pixel).map(|linear| quantize(srgb_from_linear(linear), position))
+            map(*pixel).map(|linear| quantize(display_code(linear), position))
         })
         .collect()
 }
 
-/// IEC 61966-2-1; what is below 0, above 1 or not a number is clamped.
-fn srgb_from_linear(linear: f32) -> f32 {
-    let linear = linear.clamp(0.0, 1.0).max(0.0);
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
-}
-
-/// The inverse of the sRGB encoding, of values in [0, 1].
-pub(crate) fn linear_from_srgb(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
+/// What the display is to show, encoded; what is below 0, above 1 or not a number is clamped.
+fn display_code(linear: f32) -> f32 {
+    srgb_from_linear(linear.clamp(0.0, 1.0).max(0.0).into()) as f32
 }
 
 /// Rec. 709 luminance.
@@ -68,6 +55,8 @@ fn luminance([r, g, b]: [f32; 3]) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use tyndall_scene::texture::linear_from_srgb;
+
     use super::*;
 
     #[test]
@@ -77,7 +66,7 @@ mod tests {
             size: [256, 64],
             pixels: codes
                 .clone()
-                .map(|code| [linear_from_srgb(f32::from(code) / 255.0); 3])
+                .map(|code| [linear_from_srgb(f64::from(code) / 255.0) as f32; 3])
                 .collect(),
         };
         assert!(encode(&picture).into_iter().eq(codes.map(|code| [code; 3])));

@@ -10,7 +10,7 @@ const DESATURATION: f32 = 0.15;
 
 /// Maps linear RGB of any range into [0, 1). Negative values and NaN are taken as zero.
 pub fn pbr_neutral(color: [f32; 3]) -> [f32; 3] {
-    let color = color.map(|x| x.max(0.0).min(f32::MAX));
+    let color = color.map(|x| x.clamp(0.0, f32::MAX).max(0.0));
     let least = color.into_iter().fold(f32::MAX, f32::min);
     let offset = if least < 2.0 * FRESNEL {
         least - least * least / (4.0 * FRESNEL)

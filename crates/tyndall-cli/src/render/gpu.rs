@@ -230,6 +230,7 @@ impl Pipeline {
         vec![
             ("effect", self.view.bytes()),
             ("G-buffer", self.g_buffer.bytes()),
+            ("colour target", self.color.bytes()),
             (
                 "light maps",
                 self.lights.iter().map(LightTargets::bytes).sum(),
@@ -320,6 +321,11 @@ impl ColorTarget {
         });
         let view = texture.create_view(&Default::default());
         Self { texture, view }
+    }
+
+    fn bytes(&self) -> u64 {
+        let texel = self.texture.format().block_copy_size(None).unwrap_or(0);
+        u64::from(self.texture.width()) * u64::from(self.texture.height()) * u64::from(texel)
     }
 
     /// The pass that composites on what is there.

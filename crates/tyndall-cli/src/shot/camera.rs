@@ -233,10 +233,7 @@ impl CameraSpec {
     }
 
     fn error(&self, problem: Problem) -> ShotError {
-        ShotError {
-            location: self.location.clone(),
-            problem,
-        }
+        ShotError::new(self.location.clone(), problem)
     }
 }
 

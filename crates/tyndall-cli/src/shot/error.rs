@@ -9,7 +9,17 @@ pub struct ShotError {
     /// Where it is.
     pub location: Location,
     /// What it is.
-    pub problem: Problem,
+    pub problem: Box<Problem>,
+}
+
+impl ShotError {
+    /// A mistake at a place.
+    pub fn new(location: Location, problem: Problem) -> Self {
+        Self {
+            location,
+            problem: Box::new(problem),
+        }
+    }
 }
 
 /// Where a value was written.

@@ -238,13 +238,13 @@ fn folder(file: &Path) -> &Path {
 }
 
 fn read_file(file: &Path) -> Result<Table, ShotError> {
-    let error = |origin, problem| ShotError {
-        location: Location {
+    let error = |origin, problem| {
+        let location = Location {
             file: file.to_owned(),
             origin,
             path: String::new(),
-        },
-        problem,
+        };
+        ShotError::new(location, problem)
     };
     let source = std::fs::read_to_string(file)
         .map_err(|cause| error(Origin::File, Problem::Unreadable(cause.to_string())))?;

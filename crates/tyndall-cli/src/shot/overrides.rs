@@ -78,17 +78,13 @@ impl Override {
     }
 
     fn error(&self, file: &Path, expected: String, found: &str) -> ShotError {
-        ShotError {
-            location: Location {
-                file: file.to_owned(),
-                origin: Origin::Override,
-                path: self.keys.join("."),
-            },
-            problem: Problem::Value {
-                expected,
-                found: found.to_owned(),
-            },
-        }
+        let location = Location {
+            file: file.to_owned(),
+            origin: Origin::Override,
+            path: self.keys.join("."),
+        };
+        let found = found.to_owned();
+        ShotError::new(location, Problem::Value { expected, found })
     }
 }
 

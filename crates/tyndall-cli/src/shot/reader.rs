@@ -84,11 +84,10 @@ impl<'a> Section<'a> {
     }
 
     pub(super) fn require(&self, key: &str, expected: &str) -> Result<Field<'a>, ShotError> {
-        self.get(key).ok_or_else(|| ShotError {
-            location: location(self.file, &join(&self.path, key), self.place),
-            problem: Problem::Missing {
-                expected: expected.to_owned(),
-            },
+        self.get(key).ok_or_else(|| {
+            let location = location(self.file, &join(&self.path, key), self.place);
+            let expected = expected.to_owned();
+            ShotError::new(location, Problem::Missing { expected })
         })
     }
 
@@ -137,10 +136,7 @@ impl<'a> Field<'a> {
     }
 
     pub(super) fn error(&self, problem: Problem) -> ShotError {
-        ShotError {
-            location: self.location(),
-            problem,
-        }
+        ShotError::new(self.location(), problem)
     }
 
     /// The error that something else was expected than what is here.
