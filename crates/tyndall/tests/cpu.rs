@@ -201,16 +201,15 @@ fn marching_converges_to_the_reference() {
             compare(&march, &truth).expect("same size").rel_mae
         };
         let (coarse, fine) = (error(64, "equal"), error(1024, "equal"));
-        // Largest measured: see the bounds. 16 times the steps leave a sixteenth of the error in the mean.
-        eprintln!("{}: {coarse:.5} {fine:.5}", stage.name);
-        assert!(fine < 0.01, "{}: {fine}", stage.name);
+        // Largest measured: 0.0026, a lamp in view. 16 times the steps leave a sixteenth of the error in the mean.
+        assert!(fine < 0.005, "{}: {fine}", stage.name);
         assert!(
             fine < 0.3 * coarse + 1e-7,
             "{}: {coarse} {fine}",
             stage.name
         );
         let equiangular = error(1024, "equiangular");
-        assert!(equiangular < 0.01, "{}: {equiangular}", stage.name);
+        assert!(equiangular < 0.005, "{}: {equiangular}", stage.name);
     }
 }
 
