@@ -12,6 +12,7 @@ use tyndall_scene::{
         readback, upload_light_texture,
     },
     scene::{Blocking, Material, Scene},
+    texture::linear_from_srgb,
 };
 use tyndall_testkit::{
     device::{TestDevice, device_or_skip},
@@ -437,6 +438,32 @@ fn clear_glass_is_no_glass() {
             .build();
         assert_eq!(renderer(gpu, &scene).has_tinted_glass(), expected, "{what}");
     }
+}
+
+/// All 256 codes, one a pixel.
+#[test]
+fn pictures_are_decoded_to_linear() {
+    let Some(gpu) = device_or_skip("decoding of pictures") else {
+        return;
+    };
+    let (corner, edges) = wall(4.0, -4.0);
+    let textured = Material {
+        base_color_texture: Some(0),
+        ..material([1.0; 4], Blocking::Opaque)
+    };
+    let scene = Builder::default()
+        .texture([16; 2], |x, y| [(16 * y + x) as u8; 4])
+        .rectangle(corner, edges, textured)
+        .build();
+    let targets = g_buffer(gpu, &scene, &camera(true, true), [16; 2]);
+    let base_color = read(gpu, targets.base_color());
+    let mut worst = 0.0_f64;
+    for (code, texel) in base_color.chunks_exact(4).enumerate() {
+        let expected = linear_from_srgb(code as f64 / 255.0);
+        worst = worst.max((f64::from(texel[0]) - expected).abs() / expected.max(1e-3));
+    }
+    // lavapipe: 2.5e-2 of the darkest codes (it decodes by a polynomial).
+    assert!(worst < 4e-2, "{worst:.2e}");
 }
 
 /// A node that moves takes its triangles along.
