@@ -201,7 +201,7 @@ fn cameras_and_lights_stand_where_their_nodes_do() {
     assert_eq!(half_extent, [1.0, 0.5]);
 }
 
-/// Share of the medium in a view that the framing's lights reach, all of them suns.
+/// Share of the medium in a view that the framing's suns reach; not a number where there are none.
 fn lit_share(tracer: &Tracer, framing: &Framing) -> f64 {
     const SIZE: [u32; 2] = [24, 18];
     const POINTS: u32 = 16;
@@ -209,7 +209,7 @@ fn lit_share(tracer: &Tracer, framing: &Framing) -> f64 {
     let (mut lit, mut all) = (0, 0);
     for light in &framing.lights {
         let Emitter::Directional { direction, .. } = *light else {
-            panic!("{light:?}")
+            continue;
         };
         let to_light = -Vec3::from(direction).as_dvec3().normalize();
         for pixel in 0..SIZE[0] * SIZE[1] {
@@ -242,8 +242,7 @@ fn stripped_of_camera_and_sun_the_church_still_shows_shafts() {
         "{eye}"
     );
     let share = lit_share(&tracer, &framing);
-    eprintln!("SHARE church {share}");
-    // Measured: 0.07, the light of the rose window.
+    // Measured: 0.09, the light of the rose window.
     assert!((0.005..0.5).contains(&share), "{share}");
     assert_eq!(framing, frame_scene(&church, &tracer, ASPECT));
 }
@@ -267,8 +266,7 @@ fn interiors_made_by_others_show_shafts() {
             "{name}: {eye}"
         );
         let share = lit_share(&tracer, &framing);
-        eprintln!("SHARE {name} {share}");
-        // Measured: hall 0.03, sibenik 0.03.
+        // Measured: hall 0.014, sibenik 0.013.
         assert!((0.005..0.5).contains(&share), "{name}: {share}");
     }
 }
