@@ -6,6 +6,7 @@ mod composite;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 mod effect;
+pub mod epipolar;
 mod error;
 pub mod frame;
 #[cfg(feature = "gpu")]

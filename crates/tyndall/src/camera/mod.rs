@@ -61,36 +61,78 @@ impl CameraRays {
 
     /// The ray through the centre of pixel (x, y), (0, 0) at the top left, that ends at this depth-buffer value.
     pub fn ray(&self, x: u32, y: u32, depth: f32) -> Ray {
-        let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-        let ndc = DVec2::new(2.0, -2.0) * (pixel / self.size - 0.5);
+        let [x, y] = [x, y].map(|n| f64::from(n) + 0.5);
         let view_depth = self.view_depth(depth);
         match self.projection {
-            Projection::Perspective {
-                half_extent,
-                center,
-                ..
-            } => {
-                let slope = plane_point(half_extent, center, ndc);
-                let along = self.forward + slope.x * self.right + slope.y * self.up;
+            Projection::Perspective { .. } => {
+                let along = self.forward + self.offset(x, y);
                 Ray {
                     origin: self.eye,
                     direction: along.normalize(),
                     length: view_depth * along.length(),
                 }
             }
-            Projection::Orthographic {
-                half_extent,
-                center,
-                ..
-            } => {
-                let offset = plane_point(half_extent, center, ndc);
-                Ray {
-                    origin: self.eye + offset.x * self.right + offset.y * self.up,
-                    direction: self.forward,
-                    length: view_depth.max(0.0),
-                }
-            }
+            Projection::Orthographic { .. } => Ray {
+                origin: self.eye + self.offset(x, y),
+                direction: self.forward,
+                length: view_depth.max(0.0),
+            },
         }
+    }
+
+    /// Unit direction of the perspective ray through a point of the picture [pixels].
+    pub(crate) fn direction(&self, x: f64, y: f64) -> DVec3 {
+        (self.forward + self.offset(x, y)).normalize()
+    }
+
+    /// The point of a perspective picture [pixels] that a direction goes through; `None` where it points backwards.
+    pub(crate) fn pixel(&self, direction: DVec3) -> Option<DVec2> {
+        let depth = direction.dot(self.forward);
+        let (half_extent, center) = self.plane();
+        let on_plane = DVec2::new(direction.dot(self.right), direction.dot(self.up)) / depth;
+        let ndc = (on_plane - center) / half_extent;
+        (depth > 0.0).then(|| (0.5 + 0.5 * ndc * DVec2::new(1.0, -1.0)) * self.size)
+    }
+
+    /// True where a direction goes through the perspective picture, or misses it by less than `margin` pixels.
+    pub(crate) fn sees(&self, direction: DVec3, margin: f64) -> bool {
+        self.pixel(direction).is_some_and(|p| {
+            p.cmpge(DVec2::splat(-margin)).all() && p.cmple(self.size + margin).all()
+        })
+    }
+
+    /// Angle that a pixel in the middle of a perspective picture takes up vertically [rad].
+    pub(crate) fn pixel_angle(&self) -> f64 {
+        (2.0 * self.plane().0.y / self.size.y).atan()
+    }
+
+    /// True for a camera whose rays all pass through the eye.
+    pub(crate) fn is_perspective(&self) -> bool {
+        matches!(self.projection, Projection::Perspective { .. })
+    }
+
+    /// A point of the picture [pixels] on the plane at view depth 1, relative to its middle axis.
+    fn offset(&self, x: f64, y: f64) -> DVec3 {
+        let ndc = DVec2::new(2.0, -2.0) * (DVec2::new(x, y) / self.size - 0.5);
+        let (half_extent, center) = self.plane();
+        let on_plane = center + half_extent * ndc;
+        on_plane.x * self.right + on_plane.y * self.up
+    }
+
+    /// Half extent and centre of the picture.
+    fn plane(&self) -> (DVec2, DVec2) {
+        let (Projection::Perspective {
+            half_extent,
+            center,
+            ..
+        }
+        | Projection::Orthographic {
+            half_extent,
+            center,
+            ..
+        }) = self.projection;
+        let reals = |pair: [f32; 2]| DVec2::from(pair.map(f64::from));
+        (reals(half_extent), reals(center))
     }
 
     /// View depth [m] of a depth-buffer value, clamped to the near and far planes.
@@ -112,9 +154,4 @@ impl CameraRays {
             }
         }
     }
-}
-
-fn plane_point(half_extent: [f32; 2], center: [f32; 2], ndc: DVec2) -> DVec2 {
-    let half_extent = DVec2::from(half_extent.map(f64::from));
-    DVec2::from(center.map(f64::from)) + half_extent * ndc
 }

@@ -1,5 +1,7 @@
 //! The CPU backend: every formula in f64, on all cores, with nothing installed.
 
+pub(crate) mod stretches;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
@@ -120,6 +122,9 @@ pub type Progress<'a> = &'a (dyn Fn(u64, u64) + Sync);
 
 /// A frame and its inputs as techniques see them.
 pub(crate) struct CpuScene<'a> {
+    pub(crate) camera: CameraRays,
+    pub(crate) size: [u32; 2],
+    pub(crate) depth: &'a [f32],
     pub(crate) optics: Optics,
     pub(crate) lights: Vec<CpuLight<'a>>,
     pub(crate) occluders: Option<&'a dyn Occluders>,
@@ -132,8 +137,10 @@ pub(crate) struct CpuLight<'a> {
 }
 
 /// What computes the in-scattered light of one ray.
+/// Techniques that work slice by slice do their work when they are made, and only hand out its results here.
 pub(crate) trait RayIntegrator: Sync {
-    fn in_scatter(&self, ray: &Ray) -> DVec3;
+    /// `pixel` counts row by row from the top left.
+    fn in_scatter(&self, pixel: usize, ray: &Ray) -> DVec3;
 }
 
 impl<'a> CpuScene<'a> {
@@ -143,6 +150,9 @@ impl<'a> CpuScene<'a> {
             shadows: Shadows::new(&light.emitter, light.shadow.as_ref(), inputs),
         };
         Self {
+            camera: CameraRays::new(&frame.camera, inputs.size),
+            size: inputs.size,
+            depth: inputs.depth,
             optics: Optics::new(&frame.medium),
             lights: frame.lights.iter().zip(inputs.lights).map(light).collect(),
             occluders: inputs.occluders,
@@ -165,7 +175,6 @@ pub fn render(
     validate::cpu_inputs(frame, inputs)?;
     let scene = CpuScene::new(frame, inputs);
     let integrator = frame.technique.cpu(&scene)?;
-    let camera = CameraRays::new(&frame.camera, inputs.size);
     let width = inputs.size[0];
     let total = u64::from(width) * u64::from(inputs.size[1]);
     let done = AtomicU64::new(0);
@@ -175,8 +184,8 @@ pub fn render(
         .zip(inputs.depth.par_chunks(width as usize));
     rows.enumerate().for_each(|(y, (row, depths))| {
         for (x, (pixel, depth)) in row.iter_mut().zip(depths).enumerate() {
-            let ray = camera.ray(x as u32, y as u32, *depth);
-            let light = integrator.in_scatter(&ray);
+            let ray = scene.camera.ray(x as u32, y as u32, *depth);
+            let light = integrator.in_scatter(y * width as usize + x, &ray);
             let transmittance = scene.optics.transmittance(ray.length).element_sum() / 3.0;
             *pixel = light.extend(transmittance).as_vec4().to_array();
         }

@@ -148,6 +148,54 @@ impl<'a> Shadows<'a> {
             .product()
     }
 
+    /// Distance [m] from a point of a light ray, along its unit direction, at which the map ends the ray; infinite
+    /// where it does not. A local light's ray starts at the light; the sun's may end before the point.
+    pub(crate) fn light_end(&self, origin: DVec3, direction: DVec3) -> f64 {
+        let face = self.face_of(origin + direction);
+        let matrix = &self.faces[face].clip_from_world;
+        let c0 = *matrix * origin.extend(1.0);
+        let c1 = *matrix * direction.extend(0.0);
+        let texel = picture_point(c0 + c1).and_then(|uv| texel_index(uv, self.map.size));
+        let stored = texel.map_or(0.0, |texel| self.stored_depth(face, texel));
+        if stored <= 0.0 {
+            return f64::INFINITY;
+        }
+        // z(t) = stored w(t)
+        (stored * c0.w - c0.z) / (c1.z - stored * c1.w)
+    }
+
+    /// The part of the ray's stretch `[a, b]` [m] that a single map covers; beyond it everything is lit.
+    pub(crate) fn covered(&self, origin: DVec3, direction: DVec3, [a, b]: [f64; 2]) -> [f64; 2] {
+        if self.faces.len() > 1 {
+            return [a, b];
+        }
+        let matrix = &self.faces[0].clip_from_world;
+        let c0 = *matrix * origin.extend(1.0);
+        let c1 = *matrix * direction.extend(0.0);
+        let (mut from, mut to) = (a, b);
+        // w - x, w + x, w - y, w + y >= 0, each linear in s.
+        for (constant, slope) in [
+            (c0.w - c0.x, c1.w - c1.x),
+            (c0.w + c0.x, c1.w + c1.x),
+            (c0.w - c0.y, c1.w - c1.y),
+            (c0.w + c0.y, c1.w + c1.y),
+        ] {
+            let crossing = -constant / slope;
+            match slope {
+                k if k > 0.0 => from = from.max(crossing),
+                k if k < 0.0 => to = to.min(crossing),
+                _ if constant < 0.0 => to = from,
+                _ => {}
+            }
+        }
+        [from, to]
+    }
+
+    /// Side of a face [texels], the longer one.
+    pub(crate) fn side(&self) -> u32 {
+        self.map.size[0].max(self.map.size[1])
+    }
+
     /// The face whose axis is nearest to the direction from the centre.
     fn face_of(&self, point: DVec3) -> usize {
         if self.faces.len() == 1 {

@@ -28,8 +28,37 @@ impl Shadows<'_> {
         &self,
         origin: glam::DVec3,
         direction: glam::DVec3,
-        [a, b]: [f64; 2],
+        span: [f64; 2],
         shades: &mut Vec<Shade>,
+    ) {
+        self.for_each_face(origin, direction, span, |face, ray, span| {
+            self.walk_depth(face, ray, span, shades);
+        });
+        self.walk_tints(origin, direction, span, shades);
+    }
+
+    /// Appends what the glass tints, without what the map blocks.
+    pub(crate) fn walk_tints(
+        &self,
+        origin: glam::DVec3,
+        direction: glam::DVec3,
+        span: [f64; 2],
+        shades: &mut Vec<Shade>,
+    ) {
+        if self.glass.is_some() {
+            self.for_each_face(origin, direction, span, |face, ray, span| {
+                self.walk_glass(face, ray, span, shades);
+            });
+        }
+    }
+
+    /// Calls `visit` with each face that the ray passes over, the ray in its clip space, and the stretch of it.
+    fn for_each_face(
+        &self,
+        origin: glam::DVec3,
+        direction: glam::DVec3,
+        [a, b]: [f64; 2],
+        mut visit: impl FnMut(usize, &ClipRay, [f64; 2]),
     ) {
         let mut borders = self.face_borders(origin, direction, [a, b]);
         borders.push(b);
@@ -41,9 +70,8 @@ impl Shadows<'_> {
                 c0: *matrix * origin.extend(1.0),
                 c1: *matrix * direction.extend(0.0),
             };
-            if let Some([from, to]) = in_front(&ray, [from, to]) {
-                self.walk_depth(face, &ray, [from, to], shades);
-                self.walk_glass(face, &ray, [from, to], shades);
+            if let Some(stretch) = in_front(&ray, [from, to]) {
+                visit(face, &ray, stretch);
             }
             from = to;
         }

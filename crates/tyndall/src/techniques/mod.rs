@@ -1,5 +1,6 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
+pub mod min_max;
 mod params;
 pub mod ray_march;
 pub mod reference;
@@ -16,6 +17,8 @@ pub enum Technique {
     Reference(reference::Params),
     /// Brute force.
     RayMarch(ray_march::Params),
+    /// 1-D min-max mipmaps.
+    MinMax(min_max::Params),
 }
 
 /// Which backends a technique runs on.
@@ -71,7 +74,7 @@ pub struct TechniqueInfo {
 }
 
 /// Every technique, in the order they are listed to people; the first is the default.
-pub const TABLE: &[TechniqueInfo] = &[ray_march::INFO, reference::INFO];
+pub const TABLE: &[TechniqueInfo] = &[ray_march::INFO, min_max::INFO, reference::INFO];
 
 impl Default for Technique {
     fn default() -> Self {
@@ -90,6 +93,7 @@ impl Technique {
         match self {
             Self::Reference(_) => &reference::INFO,
             Self::RayMarch(_) => &ray_march::INFO,
+            Self::MinMax(_) => &min_max::INFO,
         }
     }
 
@@ -98,6 +102,7 @@ impl Technique {
         match self {
             Self::Reference(p) => p.list(),
             Self::RayMarch(p) => p.list(),
+            Self::MinMax(p) => p.list(),
         }
     }
 
@@ -109,6 +114,7 @@ impl Technique {
         match self {
             Self::Reference(p) => p.set(key, value),
             Self::RayMarch(p) => p.set(key, value),
+            Self::MinMax(p) => p.set(key, value),
         }
     }
 
@@ -120,6 +126,7 @@ impl Technique {
         match self {
             Self::Reference(p) => reference::cpu::integrator(p, scene),
             Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
+            Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
         }
     }
 }

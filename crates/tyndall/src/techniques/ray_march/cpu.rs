@@ -23,7 +23,7 @@ struct RayMarch<'a> {
 }
 
 impl RayIntegrator for RayMarch<'_> {
-    fn in_scatter(&self, ray: &Ray) -> DVec3 {
+    fn in_scatter(&self, _pixel: usize, ray: &Ray) -> DVec3 {
         let of_light = |light: &CpuLight<'_>| -> DVec3 {
             light
                 .models

@@ -1,0 +1,155 @@
+//! Which slices a camera sees: enough of them that no view ray is farther than half a pixel from one.
+
+use std::f64::consts::{PI, TAU};
+
+use super::EpipolarFrame;
+use crate::camera::CameraRays;
+
+/// The most slices by the half-pixel rule: at very wide angles the rule is given up before memory is.
+const MAX_SLICES: usize = 1 << 14;
+
+/// Evenly spaced slices over the visible range of alpha.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slices {
+    first: f64,
+    step: f64,
+    /// Number of slices.
+    pub(crate) count: usize,
+}
+
+impl Slices {
+    /// For a perspective camera of this picture; `count` overrides the half-pixel rule.
+    pub(crate) fn new(
+        frame: &EpipolarFrame,
+        camera: &CameraRays,
+        size: [u32; 2],
+        count: Option<usize>,
+    ) -> Self {
+        let alpha_at = |x: f64, y: f64| frame.view_ray(camera.direction(x, y)).0;
+        let [width, height] = size.map(f64::from);
+        let seen = [frame.axis(), -frame.axis()]
+            .iter()
+            .any(|end| camera.sees(*end, 1.0));
+        let [first, range] = if seen {
+            [0.0, TAU]
+        } else {
+            // The picture is a convex cone that misses the axis: less than half a turn about its middle.
+            let middle = alpha_at(0.5 * width, 0.5 * height);
+            let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
+            let turns = corners.map(|[x, y]| turn(alpha_at(x, y) - middle));
+            let low = turns.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = turns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            [middle + low, high - low]
+        };
+        let rule = || {
+            let slices = range / smallest_step(alpha_at, size);
+            (slices.ceil() as usize).clamp(1, MAX_SLICES)
+        };
+        let count = count.unwrap_or_else(rule);
+        Self {
+            first: first + 0.5 * range / count as f64,
+            step: range / count as f64,
+            count,
+        }
+    }
+
+    /// alpha of a slice.
+    pub(crate) fn alpha(&self, slice: usize) -> f64 {
+        self.first + slice as f64 * self.step
+    }
+
+    /// The slice nearest to a view ray's alpha.
+    pub(crate) fn nearest(&self, alpha: f64) -> usize {
+        let from_first = turn(alpha - self.first - 0.5 * self.step * (self.count - 1) as f64);
+        let index = from_first / self.step + 0.5 * (self.count - 1) as f64;
+        index.round().clamp(0.0, (self.count - 1) as f64) as usize
+    }
+}
+
+/// An angle brought into [-pi, pi].
+fn turn(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+/// The smallest change of alpha over one pixel across the slices, over a grid of the picture's points.
+fn smallest_step(alpha_at: impl Fn(f64, f64) -> f64, size: [u32; 2]) -> f64 {
+    const GRID: u32 = 16;
+    let [width, height] = size.map(f64::from);
+    let mut smallest = f64::INFINITY;
+    for i in 0..=GRID {
+        for j in 0..=GRID {
+            let x = width * f64::from(i) / f64::from(GRID);
+            let y = height * f64::from(j) / f64::from(GRID);
+            let here = alpha_at(x, y);
+            let dx = turn(alpha_at(x + 0.5, y) - here) * 2.0;
+            let dy = turn(alpha_at(x, y + 0.5) - here) * 2.0;
+            let step = dx.hypot(dy);
+            if step > 1e-9 {
+                smallest = smallest.min(step);
+            }
+        }
+    }
+    smallest.min(TAU)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{cpu::LightSource, frame::Camera};
+    use glam::{DVec2, DVec3};
+    use tyndall_testkit::samples::in_box;
+
+    /// Over random cameras and lights: every pixel's ray, turned into its nearest slice, moves by half a pixel at most.
+    #[test]
+    fn every_pixel_lies_within_half_a_pixel_of_a_slice() {
+        let size = [64, 48];
+        let mut worst = 0.0_f64;
+        for (i, x) in in_box(5, 2500, [const { -1.0..=1.0 }; 9])
+            .iter()
+            .enumerate()
+        {
+            let [_, _, _, tx, ty, tz, lx, ly, lz] = *x;
+            if tx.abs() + tz.abs() < 1e-3 || lx.abs() + ly.abs() + lz.abs() < 1e-3 {
+                continue;
+            }
+            let yfov = 0.3 + 0.6 * (x[0] + 1.0);
+            let camera = Camera::perspective(
+                [0.0; 3],
+                [tx, ty, tz],
+                [0.0, 1.0, 0.0],
+                yfov,
+                4.0 / 3.0,
+                0.1,
+                9.0,
+            );
+            let rays = CameraRays::new(&camera, size);
+            let light = DVec3::new(lx.into(), ly.into(), lz.into());
+            let source = if i % 2 == 0 {
+                LightSource::Position((5.0 * light).to_array())
+            } else {
+                LightSource::Direction(light.normalize().to_array())
+            };
+            let frame =
+                EpipolarFrame::new(DVec3::ZERO, source).expect("the eye is not at the light");
+            let slices = Slices::new(&frame, &rays, size, None);
+            for (px, py) in (0..size[0]).flat_map(|px| (0..size[1]).map(move |py| (px, py))) {
+                let here = DVec2::new(f64::from(px) + 0.5, f64::from(py) + 0.5);
+                let (alpha, beta) = frame.view_ray(rays.direction(here.x, here.y));
+                let alpha = slices.alpha(slices.nearest(alpha));
+                let on_slice = |beta| rays.pixel(frame.view_direction(alpha, beta));
+                let (Some(p), Some(q)) = (on_slice(beta), on_slice(beta + 1e-4)) else {
+                    continue;
+                };
+                let distance = (q - p).normalize().perp_dot(here - p).abs();
+                worst = worst.max(distance);
+                // The rule looks at a grid of points: measured 0.5003.
+                assert!(
+                    distance < 0.51,
+                    "{x:?} pixel {here}: {distance} with {} slices",
+                    slices.count
+                );
+            }
+        }
+        assert!(worst > 0.45, "half a pixel is needed: {worst}");
+    }
+}

@@ -1,0 +1,97 @@
+//! `min-max`: 1-D min-max mipmaps (Chen, Baran, Durand, Jarosz 2011).
+//!
+//! Light and view rays of one slice through the eye and the light meet in one plane. The shadow map, resampled to
+//! slices, becomes one row S[gamma] a slice, and a point of the view ray beta at the light ray gamma is lit iff
+//! beta < S[gamma]: a search in one dimension, sped up by a complete binary tree of (min, max) over the row. The tree is
+//! traversed without recursion, up at most one level a step, and adjoining shadowed nodes make one stretch (the paper's
+//! section 3.3). Each lit stretch is integrated in closed form (its section 4.3), or by quadrature where the light has a
+//! cone or a picture.
+//!
+//! - `slices`: how many; 0 takes as many as put every view ray within half a pixel of one.
+//! - `samples`: of gamma, a slice; 0 takes as many as the shadow map has texels a side. They are spread over what the
+//!   slice's view rays see of the map, slice by slice.
+//! - `epipole_radius`: view rays within so many pixels of the axis cross few samples; they are walked through the shadow
+//!   map itself. So is every ray where the eye is at the light.
+//!
+//! Cost: slices x samples texels to rectify, twice as many nodes; then some nodes a border between light and shadow.
+//!
+//! Where it fails: a ray takes its slice's shadow, up to half a pixel beside it, and shadow borders fall on samples of
+//! gamma. Orthographic cameras have no such slices and are walked.
+
+pub(crate) mod cpu;
+
+use super::{
+    Backends, LightKind, Technique, TechniqueInfo, Value,
+    params::{Param, Parameters},
+};
+
+/// The entry in the table.
+pub(super) const INFO: TechniqueInfo = TechniqueInfo {
+    name: "min-max",
+    about: "1-D min-max mipmaps over epipolar slices, lit stretches in closed form",
+    citation: "Chen, Baran, Durand & Jarosz, Real-Time Volumetric Shadows using 1D Min-Max Mipmaps, I3D 2011",
+    lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    backends: Backends::Cpu,
+    default: || Technique::MinMax(Params::DEFAULT),
+};
+
+/// Parameters of `min-max`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Slices (0 to 16384); 0: by the half-pixel rule.
+    pub slices: u32,
+    /// Samples of gamma a slice (0 to 16384); 0: the shadow map's texels a side.
+    pub samples: u32,
+    /// Radius about the axis within which rays are walked [pixels] (0 to 100).
+    pub epipole_radius: f64,
+}
+
+impl Params {
+    const DEFAULT: Self = Self {
+        slices: 0,
+        samples: 0,
+        epipole_radius: 2.0,
+    };
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl Parameters for Params {
+    const TECHNIQUE: &'static str = INFO.name;
+    const PARAMS: &'static [Param<Self>] = &[
+        Param {
+            key: "slices",
+            about: "epipolar slices; 0: every view ray within half a pixel of one",
+            range: "a whole number from 0 to 16384",
+            get: |p| Value::Integer(p.slices.into()),
+            set: |p, v| {
+                p.slices = v.integer(0..=16384)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "samples",
+            about: "light rays a slice; 0: the shadow map's texels a side",
+            range: "a whole number from 0 to 16384",
+            get: |p| Value::Integer(p.samples.into()),
+            set: |p, v| {
+                p.samples = v.integer(0..=16384)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "epipole_radius",
+            about: "rays this near to the axis are walked through the shadow map [pixels]",
+            range: "a number from 0 to 100",
+            get: |p| Value::Real(p.epipole_radius),
+            set: |p, v| {
+                p.epipole_radius = v.real(0.0..=100.0)?;
+                Some(())
+            },
+        },
+    ];
+}
