@@ -8,6 +8,15 @@ use crate::camera::CameraRays;
 /// The most slices by the half-pixel rule: at very wide angles the rule is given up before memory is.
 const MAX_SLICES: usize = 1 << 14;
 
+/// How many slices a picture gets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SliceCount {
+    /// So many.
+    Exactly(usize),
+    /// By the half-pixel rule, but at least so many.
+    AtLeast(usize),
+}
+
 /// Evenly spaced slices over the visible range of alpha.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slices {
@@ -18,12 +27,12 @@ pub(crate) struct Slices {
 }
 
 impl Slices {
-    /// For a perspective camera of this picture; `count` overrides the half-pixel rule.
+    /// For a perspective camera of this picture.
     pub(crate) fn new(
         frame: &EpipolarFrame,
         camera: &CameraRays,
         size: [u32; 2],
-        count: Option<usize>,
+        count: SliceCount,
     ) -> Self {
         let alpha_at = |x: f64, y: f64| frame.view_ray(camera.direction(x, y)).0;
         let [width, height] = size.map(f64::from);
@@ -41,11 +50,13 @@ impl Slices {
             let high = turns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             [middle + low, high - low]
         };
-        let rule = || {
-            let slices = range / smallest_step(alpha_at, size);
-            (slices.ceil() as usize).clamp(1, MAX_SLICES)
+        let count = match count {
+            SliceCount::Exactly(count) => count,
+            SliceCount::AtLeast(least) => {
+                let half_pixel = (range / smallest_step(alpha_at, size)).ceil() as usize;
+                half_pixel.max(least).clamp(1, MAX_SLICES)
+            }
         };
-        let count = count.unwrap_or_else(rule);
         Self {
             first: first + 0.5 * range / count as f64,
             step: range / count as f64,
@@ -131,7 +142,7 @@ mod tests {
             };
             let frame =
                 EpipolarFrame::new(DVec3::ZERO, source).expect("the eye is not at the light");
-            let slices = Slices::new(&frame, &rays, size, None);
+            let slices = Slices::new(&frame, &rays, size, SliceCount::AtLeast(1));
             for (px, py) in (0..size[0]).flat_map(|px| (0..size[1]).map(move |py| (px, py))) {
                 let here = DVec2::new(f64::from(px) + 0.5, f64::from(py) + 0.5);
                 let (alpha, beta) = frame.view_ray(rays.direction(here.x, here.y));

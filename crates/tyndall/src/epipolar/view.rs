@@ -2,7 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::{EpipolarFrame, slices::Slices};
+use super::{
+    EpipolarFrame,
+    slices::{SliceCount, Slices},
+};
 use crate::{
     camera::Ray,
     cpu::{CpuLight, CpuScene},
@@ -30,12 +33,12 @@ pub(crate) struct InSlice {
 
 impl EpipolarView {
     /// `None` where there are no slices: the eye is at the light, the camera is orthographic, or nothing casts shadows.
-    /// `count` overrides the half-pixel rule; `epipole_radius` is in pixels.
+    /// `epipole_radius` is in pixels.
     pub(crate) fn new(
         scene: &CpuScene<'_>,
         light: &CpuLight<'_>,
         model: &LightModel<'_>,
-        count: Option<usize>,
+        count: SliceCount,
         epipole_radius: f64,
     ) -> Option<Self> {
         let (camera, size) = (&scene.camera, scene.size);

@@ -6,7 +6,7 @@ use super::Params;
 use crate::{
     camera::Ray,
     cpu::{CpuLight, CpuScene, RayIntegrator, Shade, stretches::integrate_lit},
-    epipolar::{rectified::Rectified, view::EpipolarView},
+    epipolar::{rectified::Rectified, slices::SliceCount, view::EpipolarView},
     light::LightModel,
 };
 
@@ -20,9 +20,11 @@ pub(crate) fn integrator<'a>(
     let automatic = |n: u32| (n > 0).then_some(n as usize);
     let rectified = scene.lights.iter().map(|light| {
         let (model, shadows) = (light.models.first()?, light.shadows.as_ref()?);
-        let slices = automatic(params.slices);
+        let side = shadows.side() as usize;
+        let slices =
+            automatic(params.slices).map_or(SliceCount::AtLeast(side), SliceCount::Exactly);
         let view = EpipolarView::new(scene, light, model, slices, params.epipole_radius)?;
-        let samples = automatic(params.samples).unwrap_or(shadows.side() as usize);
+        let samples = automatic(params.samples).unwrap_or(side);
         let map = Rectified::new(view.frame, &view.slices, &view.ranges, samples, shadows);
         Some((view, map))
     });
