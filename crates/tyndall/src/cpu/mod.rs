@@ -160,6 +160,17 @@ impl<'a> CpuScene<'a> {
     }
 }
 
+impl CpuScene<'_> {
+    /// The view ray of a pixel.
+    pub(crate) fn ray(&self, x: u32, y: u32) -> Ray {
+        self.camera.ray(
+            x,
+            y,
+            self.depth[y as usize * self.size[0] as usize + x as usize],
+        )
+    }
+}
+
 /// Computes the in-scattered light of a frame on all cores.
 ///
 /// # Errors
@@ -179,12 +190,10 @@ pub fn render(
     let total = u64::from(width) * u64::from(inputs.size[1]);
     let done = AtomicU64::new(0);
     let mut pixels = vec![[0.0; 4]; inputs.depth.len()];
-    let rows = pixels
-        .par_chunks_mut(width as usize)
-        .zip(inputs.depth.par_chunks(width as usize));
-    rows.enumerate().for_each(|(y, (row, depths))| {
-        for (x, (pixel, depth)) in row.iter_mut().zip(depths).enumerate() {
-            let ray = scene.camera.ray(x as u32, y as u32, *depth);
+    let rows = pixels.par_chunks_mut(width as usize);
+    rows.enumerate().for_each(|(y, row)| {
+        for (x, pixel) in row.iter_mut().enumerate() {
+            let ray = scene.ray(x as u32, y as u32);
             let light = integrator.in_scatter(y * width as usize + x, &ray);
             let transmittance = scene.optics.transmittance(ray.length).element_sum() / 3.0;
             *pixel = light.extend(transmittance).as_vec4().to_array();

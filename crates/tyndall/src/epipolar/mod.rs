@@ -5,6 +5,7 @@
 //! `gamma` the light ray: its distance from the axis [m] (sun), or its angle at the light from the axis [rad].
 //! With half-planes neither beta nor gamma changes sign.
 
+pub(crate) mod low_rank;
 pub(crate) mod rectified;
 pub(crate) mod slices;
 pub(crate) mod tree;
@@ -15,6 +16,27 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::cpu::LightSource;
+
+/// How finely slices are taken; zeros choose by the picture and the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Slices (0 to 16384); 0: every view ray within half a pixel of one, and no fewer than the map's texels a side.
+    pub slices: u32,
+    /// Light rays a slice (0 to 16384); 0: the map's texels a side.
+    pub samples: u32,
+    /// Radius about the axis within which rays are walked through the shadow map itself [pixels] (0 to 100).
+    pub epipole_radius: f64,
+}
+
+impl Default for Resolution {
+    fn default() -> Self {
+        Self {
+            slices: 0,
+            samples: 0,
+            epipole_radius: 2.0,
+        }
+    }
+}
 
 /// The axis of one eye and one light, and the coordinates about it.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +71,11 @@ impl EpipolarFrame {
     /// The axis: towards the light, unit length.
     pub fn axis(&self) -> DVec3 {
         self.axis
+    }
+
+    /// Distance of a local light from the eye [m]; `None`: the sun.
+    pub fn distance(&self) -> Option<f64> {
+        self.distance
     }
 
     /// alpha in [0, 2 pi) and beta in [0, pi] of a view ray of unit direction.

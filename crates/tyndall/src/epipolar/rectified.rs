@@ -3,70 +3,69 @@
 
 use rayon::prelude::*;
 
-use super::{EpipolarFrame, slices::Slices, tree::MinMaxTree};
-use crate::{cpu::Shade, shadow::Shadows};
+use super::{EpipolarFrame, slices::Slices};
+use crate::shadow::Shadows;
 
-/// A shadow map rectified to slices, each with its min-max tree.
+/// A shadow map rectified to slices.
 pub(crate) struct Rectified {
-    frame: EpipolarFrame,
-    rows: Vec<Row>,
+    /// One row a slice.
+    pub(crate) rows: Vec<Row>,
 }
 
-/// One slice: samples of gamma over the range that is looked at.
-struct Row {
+/// One slice: S at evenly spaced light rays over the range that is looked at.
+pub(crate) struct Row {
     start: f64,
     step: f64,
-    tree: MinMaxTree,
+    /// S [rad]; sample i stands for gamma from `self.gamma(i)` to `self.gamma(i + 1)`.
+    pub(crate) angles: Vec<f32>,
+}
+
+impl Row {
+    /// gamma at the border before sample `i`; fractions are within a sample.
+    pub(crate) fn gamma(&self, i: f64) -> f64 {
+        self.start + i * self.step
+    }
+
+    /// Where a gamma lies among the samples, from 0 to their number.
+    pub(crate) fn place(&self, gamma: f64) -> f64 {
+        ((gamma - self.start) / self.step).clamp(0.0, self.angles.len() as f64)
+    }
 }
 
 impl Rectified {
     /// `ranges` is the range of gamma that each slice's view rays cover (dynamic range selection); each is sampled
     /// `samples` times, as finely as the shadow map's texels where that is as many as a side has.
     pub(crate) fn new(
-        frame: EpipolarFrame,
+        frame: &EpipolarFrame,
         slices: &Slices,
         ranges: &[[f64; 2]],
         samples: usize,
         shadows: &Shadows<'_>,
     ) -> Self {
         let row = |(slice, [start, end]): (usize, &[f64; 2])| {
-            // A slice that no view ray looks at keeps one sample that nobody asks for.
-            let count = if end > start { samples } else { 1 };
-            let step = (end - start).max(0.0) / count as f64;
+            let looked_at = end > start;
+            let mut row = Row {
+                start: if looked_at { *start } else { 0.0 },
+                step: if looked_at {
+                    (end - start) / samples as f64
+                } else {
+                    1.0
+                },
+                angles: Vec::new(),
+            };
             let alpha = slices.alpha(slice);
             let angle = |i: usize| {
-                let gamma = start + (i as f64 + 0.5) * step;
+                let gamma = row.gamma(i as f64 + 0.5);
                 let (origin, way) = frame.light_ray(alpha, gamma);
                 frame.shadow_angle(gamma, shadows.light_end(origin, way)) as f32
             };
-            let angles: Vec<f32> = (0..count).map(angle).collect();
-            Row {
-                start: *start,
-                step,
-                tree: MinMaxTree::new(&angles),
-            }
+            row.angles = (0..if looked_at { samples } else { 0 })
+                .map(angle)
+                .collect();
+            row
         };
         Self {
-            frame,
             rows: ranges.par_iter().enumerate().map(row).collect(),
         }
-    }
-
-    /// Appends the stretches of a view ray within `span` [m] that are in shadow.
-    pub(crate) fn shades(&self, slice: usize, beta: f64, span: [f64; 2], shades: &mut Vec<Shade>) {
-        let row = &self.rows[slice];
-        let [from, to] = span.map(|s| (self.frame.gamma(beta, s) - row.start) / row.step);
-        let distance = |leaf: usize| {
-            let gamma = row.start + leaf as f64 * row.step;
-            self.frame.crossing(beta, gamma).clamp(span[0], span[1])
-        };
-        let leaves = [from.max(0.0).floor() as usize, to.max(0.0).ceil() as usize];
-        row.tree.dark_runs(beta as f32, leaves, |[a, b]| {
-            shades.push(Shade {
-                start: distance(a),
-                end: distance(b),
-                tint: [0.0; 3],
-            });
-        });
     }
 }

@@ -11,7 +11,7 @@ pub(crate) struct MinMaxTree {
 
 impl MinMaxTree {
     pub(crate) fn new(row: &[f32]) -> Self {
-        let leaves = row.len().next_power_of_two();
+        let leaves = row.len().max(1).next_power_of_two();
         let mut nodes = Vec::with_capacity(2 * leaves);
         nodes.extend(row.iter().map(|s| [*s; 2]));
         nodes.resize(leaves, [f32::INFINITY; 2]);

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::{
-    EpipolarFrame,
+    EpipolarFrame, Resolution,
+    rectified::Rectified,
     slices::{SliceCount, Slices},
 };
 use crate::{
@@ -15,9 +16,8 @@ use crate::{
 /// The slices of a picture, and what its rays see of each.
 pub(crate) struct EpipolarView {
     pub(crate) frame: EpipolarFrame,
-    pub(crate) slices: Slices,
-    /// The range of gamma that each slice's rays see of the shadow map; empty where start > end.
-    pub(crate) ranges: Vec<[f64; 2]>,
+    slices: Slices,
+    pub(crate) map: Rectified,
     /// Smallest sine of beta whose ray is taken to a slice.
     least_sine: f64,
 }
@@ -33,34 +33,49 @@ pub(crate) struct InSlice {
 
 impl EpipolarView {
     /// `None` where there are no slices: the eye is at the light, the camera is orthographic, or nothing casts shadows.
-    /// `epipole_radius` is in pixels.
     pub(crate) fn new(
         scene: &CpuScene<'_>,
         light: &CpuLight<'_>,
-        model: &LightModel<'_>,
-        count: SliceCount,
-        epipole_radius: f64,
+        resolution: &Resolution,
     ) -> Option<Self> {
         let (camera, size) = (&scene.camera, scene.size);
-        if !camera.is_perspective() || light.shadows.is_none() {
+        let (model, shadows) = (light.models.first()?, light.shadows.as_ref()?);
+        if !camera.is_perspective() {
             return None;
         }
         let frame = EpipolarFrame::new(camera.eye, model.source())?;
+        let side = shadows.side() as usize;
+        let chosen = |n: u32| (n > 0).then_some(n as usize);
+        let count =
+            chosen(resolution.slices).map_or(SliceCount::AtLeast(side), SliceCount::Exactly);
         let slices = Slices::new(&frame, camera, size, count);
         let mut view = Self {
             frame,
-            ranges: vec![NOTHING; slices.count],
             slices,
-            least_sine: (epipole_radius * camera.pixel_angle()).sin(),
+            map: Rectified { rows: Vec::new() },
+            least_sine: (resolution.epipole_radius * camera.pixel_angle()).sin(),
         };
+        let ranges = view.ranges(scene, light, model);
+        let samples = chosen(resolution.samples).unwrap_or(side);
+        view.map = Rectified::new(&frame, &slices, &ranges, samples, shadows);
+        Some(view)
+    }
+
+    /// The range of gamma that each slice's rays see of the shadow map; empty where start > end.
+    fn ranges(
+        &self,
+        scene: &CpuScene<'_>,
+        light: &CpuLight<'_>,
+        model: &LightModel<'_>,
+    ) -> Vec<[f64; 2]> {
+        let none = || vec![NOTHING; self.slices.count];
         let row = |y: u32| {
-            let mut ranges = vec![NOTHING; slices.count];
-            for x in 0..size[0] {
-                let ray = camera.ray(x, y, scene.depth[(y * size[0] + x) as usize]);
-                if let Some(ray) = view.place(&ray, light, model) {
-                    let range = &mut ranges[ray.slice];
-                    let ends = ray.span.map(|s| view.frame.gamma(ray.beta, s));
-                    *range = union(*range, ends);
+            let mut ranges = none();
+            for x in 0..scene.size[0] {
+                let ray = scene.ray(x, y);
+                if let Some(place) = self.place(&ray, light, model) {
+                    let ends = place.span.map(|s| self.frame.gamma(place.beta, s));
+                    ranges[place.slice] = union(ranges[place.slice], ends);
                 }
             }
             ranges
@@ -71,9 +86,10 @@ impl EpipolarView {
             }
             a
         };
-        let none = || vec![NOTHING; slices.count];
-        view.ranges = (0..size[1]).into_par_iter().map(row).reduce(none, unite);
-        Some(view)
+        (0..scene.size[1])
+            .into_par_iter()
+            .map(row)
+            .reduce(none, unite)
     }
 
     /// The ray's place; `None` where it is too near to the axis or sees nothing of the map.

@@ -157,9 +157,9 @@ impl<'a> LightModel<'a> {
         self.texture.is_none() && matches!(self.shape, Shape::Parallel { .. } | Shape::Point { .. })
     }
 
-    /// True where a picture colours the light.
-    pub fn is_textured(&self) -> bool {
-        self.texture.is_some()
+    /// Illuminance [W/m^2] or intensity [W/sr] before cone, picture and distance.
+    pub(crate) fn strength(&self) -> DVec3 {
+        self.color
     }
 
     /// The part of the ray within `[a, b]` that the light can reach at all; empty where first >= second.

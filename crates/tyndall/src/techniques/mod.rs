@@ -1,5 +1,6 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
+pub mod incremental;
 pub mod min_max;
 mod params;
 pub mod ray_march;
@@ -19,6 +20,8 @@ pub enum Technique {
     RayMarch(ray_march::Params),
     /// 1-D min-max mipmaps.
     MinMax(min_max::Params),
+    /// Incremental integration.
+    Incremental(incremental::Params),
 }
 
 /// Which backends a technique runs on.
@@ -74,7 +77,12 @@ pub struct TechniqueInfo {
 }
 
 /// Every technique, in the order they are listed to people; the first is the default.
-pub const TABLE: &[TechniqueInfo] = &[ray_march::INFO, min_max::INFO, reference::INFO];
+pub const TABLE: &[TechniqueInfo] = &[
+    ray_march::INFO,
+    min_max::INFO,
+    incremental::INFO,
+    reference::INFO,
+];
 
 impl Default for Technique {
     fn default() -> Self {
@@ -94,6 +102,7 @@ impl Technique {
             Self::Reference(_) => &reference::INFO,
             Self::RayMarch(_) => &ray_march::INFO,
             Self::MinMax(_) => &min_max::INFO,
+            Self::Incremental(_) => &incremental::INFO,
         }
     }
 
@@ -103,6 +112,7 @@ impl Technique {
             Self::Reference(p) => p.list(),
             Self::RayMarch(p) => p.list(),
             Self::MinMax(p) => p.list(),
+            Self::Incremental(p) => p.list(),
         }
     }
 
@@ -115,6 +125,7 @@ impl Technique {
             Self::Reference(p) => p.set(key, value),
             Self::RayMarch(p) => p.set(key, value),
             Self::MinMax(p) => p.set(key, value),
+            Self::Incremental(p) => p.set(key, value),
         }
     }
 
@@ -127,6 +138,7 @@ impl Technique {
             Self::Reference(p) => reference::cpu::integrator(p, scene),
             Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
+            Self::Incremental(p) => incremental::cpu::integrator(p, scene),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Parameters that files and command lines set by name.
 
-use std::ops::RangeInclusive;
+use std::{marker::PhantomData, ops::RangeInclusive};
+
+use crate::epipolar::Resolution;
 
 /// A parameter's value, as a file or a command line gives it.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,8 +119,12 @@ pub(crate) struct Param<P> {
 pub(crate) trait Parameters: Default + Sized + 'static {
     /// The technique's name.
     const TECHNIQUE: &'static str;
-    /// All of them.
-    const PARAMS: &'static [Param<Self>];
+    /// All of them, in groups that techniques may share.
+    const PARAMS: &'static [&'static [Param<Self>]];
+
+    fn all() -> impl Iterator<Item = &'static Param<Self>> {
+        Self::PARAMS.iter().copied().flatten()
+    }
 
     fn list(&self) -> Vec<ParamInfo> {
         let default = Self::default();
@@ -129,12 +135,12 @@ pub(crate) trait Parameters: Default + Sized + 'static {
             default: (p.get)(&default),
             value: (p.get)(self),
         };
-        Self::PARAMS.iter().map(info).collect()
+        Self::all().map(info).collect()
     }
 
     fn set(&mut self, key: &str, value: &Value) -> Result<(), ParamError> {
-        let Some(param) = Self::PARAMS.iter().find(|p| p.key == key) else {
-            let keys: Vec<_> = Self::PARAMS.iter().map(|p| p.key).collect();
+        let Some(param) = Self::all().find(|p| p.key == key) else {
+            let keys: Vec<_> = Self::all().map(|p| p.key).collect();
             return Err(ParamError::Unknown {
                 technique: Self::TECHNIQUE,
                 key: key.to_owned(),
@@ -147,4 +153,48 @@ pub(crate) trait Parameters: Default + Sized + 'static {
             found: value.to_string(),
         })
     }
+}
+
+/// Parameters of techniques that work in epipolar slices.
+pub(crate) struct Slicing<P>(PhantomData<P>);
+
+/// Parameters that hold a [`Resolution`].
+pub(crate) trait Sliced {
+    fn resolution(&self) -> &Resolution;
+    fn resolution_mut(&mut self) -> &mut Resolution;
+}
+
+impl<P: Sliced + 'static> Slicing<P> {
+    pub(crate) const PARAMS: &'static [Param<P>] = &[
+        Param {
+            key: "slices",
+            about: "epipolar slices; 0: every ray within half a pixel of one, and no fewer than the map's texels a side",
+            range: "a whole number from 0 to 16384",
+            get: |p| Value::Integer(p.resolution().slices.into()),
+            set: |p, v| {
+                p.resolution_mut().slices = v.integer(0..=16384)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "samples",
+            about: "light rays a slice; 0: the shadow map's texels a side",
+            range: "a whole number from 0 to 16384",
+            get: |p| Value::Integer(p.resolution().samples.into()),
+            set: |p, v| {
+                p.resolution_mut().samples = v.integer(0..=16384)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "epipole_radius",
+            about: "rays this near to the axis are walked through the shadow map [pixels]",
+            range: "a number from 0 to 100",
+            get: |p| Value::Real(p.resolution().epipole_radius),
+            set: |p, v| {
+                p.resolution_mut().epipole_radius = v.real(0.0..=100.0)?;
+                Some(())
+            },
+        },
+    ];
 }

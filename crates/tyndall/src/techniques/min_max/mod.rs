@@ -24,9 +24,10 @@
 pub(crate) mod cpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, Sliced, Slicing},
 };
+use crate::epipolar::Resolution;
 
 /// The entry in the table.
 pub(super) const INFO: TechniqueInfo = TechniqueInfo {
@@ -35,66 +36,27 @@ pub(super) const INFO: TechniqueInfo = TechniqueInfo {
     citation: "Chen, Baran, Durand & Jarosz, Real-Time Volumetric Shadows using 1D Min-Max Mipmaps, I3D 2011",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
     backends: Backends::Cpu,
-    default: || Technique::MinMax(Params::DEFAULT),
+    default: || Technique::MinMax(Params::default()),
 };
 
 /// Parameters of `min-max`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Params {
-    /// Slices (0 to 16384); 0: by the half-pixel rule.
-    pub slices: u32,
-    /// Samples of gamma a slice (0 to 16384); 0: the shadow map's texels a side.
-    pub samples: u32,
-    /// Radius about the axis within which rays are walked [pixels] (0 to 100).
-    pub epipole_radius: f64,
+    /// Slices and samples.
+    pub resolution: Resolution,
 }
 
-impl Params {
-    const DEFAULT: Self = Self {
-        slices: 0,
-        samples: 0,
-        epipole_radius: 2.0,
-    };
-}
+impl Sliced for Params {
+    fn resolution(&self) -> &Resolution {
+        &self.resolution
+    }
 
-impl Default for Params {
-    fn default() -> Self {
-        Self::DEFAULT
+    fn resolution_mut(&mut self) -> &mut Resolution {
+        &mut self.resolution
     }
 }
 
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
-    const PARAMS: &'static [Param<Self>] = &[
-        Param {
-            key: "slices",
-            about: "epipolar slices; 0: every ray within half a pixel of one, and no fewer than the map's texels a side",
-            range: "a whole number from 0 to 16384",
-            get: |p| Value::Integer(p.slices.into()),
-            set: |p, v| {
-                p.slices = v.integer(0..=16384)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "samples",
-            about: "light rays a slice; 0: the shadow map's texels a side",
-            range: "a whole number from 0 to 16384",
-            get: |p| Value::Integer(p.samples.into()),
-            set: |p, v| {
-                p.samples = v.integer(0..=16384)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "epipole_radius",
-            about: "rays this near to the axis are walked through the shadow map [pixels]",
-            range: "a number from 0 to 100",
-            get: |p| Value::Real(p.epipole_radius),
-            set: |p, v| {
-                p.epipole_radius = v.real(0.0..=100.0)?;
-                Some(())
-            },
-        },
-    ];
+    const PARAMS: &'static [&'static [Param<Self>]] = &[Slicing::<Self>::PARAMS];
 }

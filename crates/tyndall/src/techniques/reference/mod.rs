@@ -72,7 +72,7 @@ impl Default for Params {
 
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
-    const PARAMS: &'static [Param<Self>] = &[
+    const PARAMS: &'static [&'static [Param<Self>]] = &[&[
         Param {
             key: "tolerance",
             about: "largest relative error of the quadrature of a lit stretch",
@@ -93,5 +93,5 @@ impl Parameters for Params {
                 Some(())
             },
         },
-    ];
+    ]];
 }

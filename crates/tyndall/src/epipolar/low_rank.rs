@@ -1,0 +1,122 @@
+//! The smooth part of the integrand as a sum of products (Chen 2011, section 3.2, eq. 5):
+//! `K(beta, gamma) ~ sum_i B_i(beta) Gamma_i(gamma)`, by the singular value decomposition of K on a grid.
+
+use glam::DVec3;
+use nalgebra::DMatrix;
+
+/// Samples a side of the grid (the paper's).
+const GRID: usize = 64;
+
+/// The factors of K, per colour channel.
+pub(crate) struct LowRank {
+    beta: Axis,
+    gamma: Axis,
+    /// `[i][sample]`: B_i and Gamma_i on the grid.
+    beta_factors: Vec<Vec<DVec3>>,
+    gamma_factors: Vec<Vec<DVec3>>,
+}
+
+#[derive(Clone, Copy)]
+struct Axis {
+    start: f64,
+    step: f64,
+}
+
+impl Axis {
+    fn new([start, end]: [f64; 2]) -> Self {
+        Self {
+            start,
+            step: (end - start) / (GRID - 1) as f64,
+        }
+    }
+
+    fn at(self, i: usize) -> f64 {
+        self.start + i as f64 * self.step
+    }
+
+    /// Linear between samples.
+    fn interpolate(self, samples: &[DVec3], x: f64) -> DVec3 {
+        let place = (x - self.start) / self.step.max(f64::MIN_POSITIVE);
+        let place = place.clamp(0.0, (GRID - 1) as f64);
+        let cell = place.floor().min((GRID - 2) as f64);
+        samples[cell as usize].lerp(samples[cell as usize + 1], place - cell)
+    }
+}
+
+impl LowRank {
+    /// The best `rank` terms (fewer where the decomposition fails to converge) of a kernel that is finite on both ranges.
+    pub(crate) fn new(
+        kernel: impl Fn(f64, f64) -> DVec3,
+        betas: [f64; 2],
+        gammas: [f64; 2],
+        rank: usize,
+    ) -> Self {
+        let (beta, gamma) = (Axis::new(betas), Axis::new(gammas));
+        let mut factors = [(); 2].map(|()| vec![vec![DVec3::ZERO; GRID]; rank]);
+        let samples: Vec<DVec3> = (0..GRID * GRID)
+            .map(|i| kernel(beta.at(i % GRID), gamma.at(i / GRID)))
+            .collect();
+        for channel in 0..3 {
+            let matrix = DMatrix::from_fn(GRID, GRID, |b, g| samples[g * GRID + b][channel]);
+            let svd = matrix.svd(true, true);
+            let (Some(u), Some(v)) = (svd.u, svd.v_t) else {
+                continue;
+            };
+            for i in 0..rank.min(GRID) {
+                for k in 0..GRID {
+                    factors[0][i][k][channel] = u[(k, i)] * svd.singular_values[i];
+                    factors[1][i][k][channel] = v[(i, k)];
+                }
+            }
+        }
+        let [beta_factors, gamma_factors] = factors;
+        Self {
+            beta,
+            gamma,
+            beta_factors,
+            gamma_factors,
+        }
+    }
+
+    /// B_i(beta), for each i.
+    pub(crate) fn at_beta(&self, beta: f64) -> impl Iterator<Item = DVec3> {
+        self.beta_factors
+            .iter()
+            .map(move |b| self.beta.interpolate(b, beta))
+    }
+
+    /// Gamma_i(gamma), for each i.
+    pub(crate) fn at_gamma(&self, gamma: f64) -> impl Iterator<Item = DVec3> {
+        self.gamma_factors
+            .iter()
+            .map(move |g| self.gamma.interpolate(g, gamma))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn four_terms_hold_an_attenuation() {
+        // Extinction towards the sun's axis, three optical depths per channel.
+        let kernel =
+            |beta: f64, gamma: f64| (-DVec3::new(0.02, 0.05, 0.1) * gamma / beta.sin()).exp();
+        let (betas, gammas) = ([0.4, 2.0], [0.0, 30.0]);
+        let error = |rank| {
+            let factors = LowRank::new(kernel, betas, gammas, rank);
+            let mut worst = 0.0_f64;
+            for (i, j) in (0..100).flat_map(|i| (0..100).map(move |j| (i, j))) {
+                let beta = betas[0] + (betas[1] - betas[0]) * f64::from(i) / 99.0;
+                let gamma = gammas[1] * f64::from(j) / 99.0;
+                let terms = factors.at_beta(beta).zip(factors.at_gamma(gamma));
+                let sum: DVec3 = terms.map(|(b, g)| b * g).sum();
+                worst = worst.max((sum - kernel(beta, gamma)).abs().max_element());
+            }
+            worst
+        };
+        // Measured: 3e-3 (linear interpolation between 64 samples) and 0.2.
+        assert!(error(4) < 5e-3, "{}", error(4));
+        assert!(error(1) > 0.05, "{}", error(1));
+    }
+}

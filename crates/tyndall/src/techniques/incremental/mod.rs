@@ -1,0 +1,83 @@
+//! `incremental`: incremental integration (Baran, Chen, Ragan-Kelley, Durand, Lehtinen 2010), as Chen 2011 outlines it.
+//!
+//! In a slice, let the view rays come in the order of growing beta: a sample gamma of the rectified shadow map is lit
+//! until beta reaches S[gamma], and dark ever after. So the lit samples are kept in a partial-sum tree (Fenwick 1994)
+//! from which they are taken one by one, and a ray's integral is a prefix sum up to its end, whatever lies between. The
+//! integrand is the sum of a few products `B_i(beta) Gamma_i(gamma)` (Chen 2011, eq. 5), so that one set of sums serves
+//! all rays. Where the papers resample the picture to slices, here each pixel goes to its nearest slice as it is, which
+//! saves that error.
+//!
+//! - `rank`: products in the sum; `slices`, `samples`, `epipole_radius`: as of `min-max`, but that the kernel is steep near
+//!   the axis, so that more rays are walked there. Relative error of a low sun in the picture (160 x 120, chromatic air):
+//!   0.0082 at 2 pixels, 0.0030 at 6, 0.0057 at 2 pixels with rank 8; of `min-max` 0.0001.
+//!
+//! Cost: O((samples + rays) log samples) a slice, whatever the scene: fast on a CPU, and one ray after another.
+//!
+//! Where it fails: as `min-max`, and where the integrand is no short sum of products: cones and pictures depend on the
+//! slice, and are refused. Rays that coloured glass tints are walked through the shadow map.
+
+pub(crate) mod cpu;
+
+use super::{
+    Backends, LightKind, Technique, TechniqueInfo, Value,
+    params::{Param, Parameters, Sliced, Slicing},
+};
+use crate::epipolar::Resolution;
+
+/// The entry in the table.
+pub(super) const INFO: TechniqueInfo = TechniqueInfo {
+    name: "incremental",
+    about: "partial sums per epipolar slice, view rays in order of their angle",
+    citation: "Baran, Chen, Ragan-Kelley, Durand & Lehtinen, A Hierarchical Volumetric Shadow Algorithm for Single Scattering, SIGGRAPH Asia 2010",
+    lights: &[LightKind::Directional, LightKind::Point],
+    backends: Backends::Cpu,
+    default: || Technique::Incremental(Params::default()),
+};
+
+/// Parameters of `incremental`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Products in the low-rank sum (1 to 16).
+    pub rank: u32,
+    /// Slices and samples.
+    pub resolution: Resolution,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            rank: 4,
+            resolution: Resolution {
+                epipole_radius: 6.0,
+                ..Resolution::default()
+            },
+        }
+    }
+}
+
+impl Sliced for Params {
+    fn resolution(&self) -> &Resolution {
+        &self.resolution
+    }
+
+    fn resolution_mut(&mut self) -> &mut Resolution {
+        &mut self.resolution
+    }
+}
+
+impl Parameters for Params {
+    const TECHNIQUE: &'static str = INFO.name;
+    const PARAMS: &'static [&'static [Param<Self>]] = &[
+        &[Param {
+            key: "rank",
+            about: "products in the low-rank sum",
+            range: "a whole number from 1 to 16",
+            get: |p| Value::Integer(p.rank.into()),
+            set: |p, v| {
+                p.rank = v.integer(1..=16)?;
+                Some(())
+            },
+        }],
+        Slicing::<Self>::PARAMS,
+    ];
+}
