@@ -38,7 +38,7 @@ const TARGET: Vec3 = vec3(-0.5, 2.6, 0.0);
 const YFOV: f32 = 1.0;
 const NEAR: f32 = 0.1;
 /// Where the haze ends [m]; the projection itself has no far plane.
-const FAR: f32 = 40.0;
+const FAR: f32 = 30.0;
 /// The way the sun's light travels, and its illuminance [W/m^2].
 const SUN: Vec3 = vec3(0.35, -0.8, 0.3);
 const ILLUMINANCE: f32 = 6.0;
@@ -156,7 +156,7 @@ fn frame() -> Frame {
         }],
         medium: Medium {
             components: vec![MediumComponent {
-                sigma_s: [0.05, 0.052, 0.056],
+                sigma_s: [0.03, 0.031, 0.033],
                 sigma_a: [0.004; 3],
                 phase: Phase::HenyeyGreenstein { g: 0.5 },
             }],
