@@ -17,6 +17,7 @@
 //! | name | what it is | lights | runs on |
 //! |---|---|---|---|
 //! | [`ray-march`](techniques::ray_march) | brute force: N steps a ray, each looked up in the shadow map | directional, point, spot | GPU, CPU |
+//! | [`min-max`](techniques::min_max) | 1-D min-max mipmaps over epipolar slices, lit stretches in closed form | directional, point, spot | CPU |
 //! | [`reference`](techniques::reference) | exact visibility and f64 quadrature to a stated tolerance | directional, point, spot, rectangle | CPU |
 //!
 //! # Quick start on the CPU

@@ -66,7 +66,7 @@ pub enum LoadError {
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
     let bytes = fs::read(path).map_err(|cause| LoadError::Read {
         path: path.to_owned(),
-        source,
+        cause,
     })?;
     read(&bytes, path).map_err(|refusal| refusal.in_file(path))
 }
