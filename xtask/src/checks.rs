@@ -40,6 +40,15 @@ pub(crate) fn unit() -> anyhow::Result<()> {
     cargo(&["test", "--release", "--workspace"], &[NO_DEVICE_SELECT])
 }
 
+pub(crate) fn examples() -> anyhow::Result<()> {
+    let example = |arguments: &[&str]| {
+        let run = ["run", "--release", "-p", "tyndall", "--example"];
+        cargo(&[&run[..], arguments].concat(), &[NO_DEVICE_SELECT])
+    };
+    example(&["minimal"])?;
+    example(&["in_your_renderer", "--", "target/in_your_renderer.png"])
+}
+
 pub(crate) fn truth() -> anyhow::Result<()> {
     cargo(
         &["test", "--release", "-p", "tyndall-cli", "--test", "truth"],

@@ -43,6 +43,11 @@ const CHECKS: &[Check] = &[
         run: driver::ensure,
     },
     Check {
+        name: "examples",
+        about: "the library's examples; the renderer's picture goes to target/",
+        run: checks::examples,
+    },
+    Check {
         name: "unit",
         about: "all tests, with the shared truth shots where present",
         run: checks::unit,

@@ -43,9 +43,9 @@ pub const AMBIENT: f64 = 0.03;
 /// How much more of it falls on what faces up, and less on what faces down.
 pub const AMBIENT_TILT: f64 = 0.5;
 /// Radiance of the sky at the horizon and below, relative to the sun's illuminance [1/sr].
-pub const SKY_HORIZON: [f64; 3] = [0.075, 0.085, 0.10];
+pub const SKY_HORIZON: [f64; 3] = [0.020, 0.024, 0.029];
 /// Radiance of the sky overhead, relative to the sun's illuminance [1/sr].
-pub const SKY_ZENITH: [f64; 3] = [0.018, 0.032, 0.065];
+pub const SKY_ZENITH: [f64; 3] = [0.006, 0.011, 0.022];
 /// Points that a rectangular light is taken as.
 pub const RECT_SAMPLES: u32 = 16;
 
@@ -61,11 +61,7 @@ pub fn shade(g_buffer: &GBuffer, frame: &Frame, lights: &[CpuLightInputs<'_>]) -
     let shading = Shading {
         g_buffer,
         rays: CameraRays::new(&frame.camera, g_buffer.size),
-        far_value: if frame.camera.reversed_depth {
-            0.0
-        } else {
-            1.0
-        },
+        far_value: frame.camera.depth_range.far_value(),
         optics: Optics::new(&frame.medium),
         lights: scene_lights,
         sun: frame.lights.iter().map(sun_illuminance).sum(),

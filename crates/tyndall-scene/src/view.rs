@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tyndall::{
     camera::CameraRays,
-    frame::{Camera, Projection},
+    frame::{Camera, DepthRange},
 };
 
 /// A ray in world space [m].
@@ -22,59 +22,25 @@ impl Ray {
     }
 }
 
-/// How a depth buffer stores distance along an axis.
-#[derive(Clone, Copy, Debug)]
-struct DepthRange {
-    /// Depth of the near plane [m].
-    near: f64,
-    /// Depth of the far plane [m].
-    far: f64,
-    /// True where the buffer holds 1 at `near` and 0 at `far`.
-    reversed: bool,
-}
-
-impl DepthRange {
-    /// What a perspective projection stores for a depth [m].
-    fn perspective(&self, depth: f64) -> f64 {
-        let Self { near, far, .. } = *self;
-        self.stored(near * (far - depth) / (depth * (far - near)))
-    }
-
-    /// What an orthographic projection stores for a depth [m].
-    fn orthographic(&self, depth: f64) -> f64 {
-        self.stored((self.far - depth) / (self.far - self.near))
-    }
-
-    fn stored(&self, from_far: f64) -> f64 {
-        if self.reversed {
-            from_far
-        } else {
-            1.0 - from_far
-        }
-    }
-}
-
 /// A camera's picture: the rays through its pixels and the depths it stores.
 #[derive(Clone, Debug)]
 pub struct View {
     rays: CameraRays,
-    projection: Projection,
-    range: DepthRange,
+    /// Distances along the viewing axis between which surfaces are seen [m].
+    planes: [f64; 2],
+    depth_range: DepthRange,
 }
 
 impl View {
     /// A camera that takes a picture of `size` [pixels].
     pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
-        let (Projection::Perspective { near, far, .. }
-        | Projection::Orthographic { near, far, .. }) = camera.projection;
+        let rays = CameraRays::new(camera, size);
+        let [near, far] = rays.planes();
+        let infinite = camera.depth_range == DepthRange::ReversedInfinite;
         Self {
-            rays: CameraRays::new(camera, size),
-            projection: camera.projection,
-            range: DepthRange {
-                near: f64::from(near),
-                far: f64::from(far),
-                reversed: camera.reversed_depth,
-            },
+            rays,
+            planes: [near, if infinite { f64::INFINITY } else { far }],
+            depth_range: camera.depth_range,
         }
     }
 
@@ -87,23 +53,20 @@ impl View {
         }
     }
 
-    /// Distances along a ray of this view at which it crosses the near and the far plane [m].
+    /// Distances along a ray of this view between which surfaces are seen: from the near plane to the far one, or to infinity
+    /// where the depth range is infinite [m].
     pub fn span(&self, ray: &Ray) -> [f64; 2] {
-        [self.range.near, self.range.far].map(|depth| depth / self.slope(ray))
+        self.planes.map(|depth| depth / self.slope(ray))
     }
 
     /// What the depth buffer holds for a distance along a ray of this view [m].
     pub fn stored_depth(&self, ray: &Ray, distance: f64) -> f32 {
-        let depth = distance * self.slope(ray);
-        (match self.projection {
-            Projection::Perspective { .. } => self.range.perspective(depth),
-            Projection::Orthographic { .. } => self.range.orthographic(depth),
-        }) as f32
+        self.rays.depth_value(distance * self.slope(ray))
     }
 
     /// What the depth buffer holds where nothing was drawn.
     pub fn far_value(&self) -> f32 {
-        if self.range.reversed { 0.0 } else { 1.0 }
+        self.depth_range.far_value()
     }
 
     /// View depth gained per distance along a ray.
@@ -115,26 +78,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn range(reversed: bool) -> DepthRange {
-        DepthRange {
-            near: 0.5,
-            far: 20.0,
-            reversed,
-        }
-    }
-
-    #[test]
-    fn planes_store_zero_and_one() {
-        for reversed in [false, true] {
-            let range = range(reversed);
-            let (near, far) = if reversed { (1.0, 0.0) } else { (0.0, 1.0) };
-            for of in [DepthRange::perspective, DepthRange::orthographic] {
-                assert!((of(&range, 0.5) - near).abs() < 1e-15);
-                assert!((of(&range, 20.0) - far).abs() < 1e-15);
-            }
-        }
-    }
+    use tyndall::frame::Projection;
 
     #[test]
     fn rays_go_through_pixel_centres() {
@@ -170,7 +114,7 @@ mod tests {
                 near: -1.0,
                 far: 9.0,
             },
-            reversed_depth: false,
+            depth_range: DepthRange::Standard,
         };
         let view = View::new(&camera, [4, 4]);
         let ray = view.ray(0, 3);

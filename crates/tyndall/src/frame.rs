@@ -28,8 +28,32 @@ pub struct Camera {
     pub up: [f32; 3],
     /// The projection.
     pub projection: Projection,
-    /// True where the depth buffer holds 1 at `near` and 0 at `far` ("reversed z"), false for 0 at `near` and 1 at `far`.
-    pub reversed_depth: bool,
+    /// What the depth buffer holds.
+    pub depth_range: DepthRange,
+}
+
+/// How a depth buffer stores view depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthRange {
+    /// 0 at the near plane, 1 at the far plane.
+    Standard,
+    /// 1 at the near plane, 0 at the far plane ("reversed z").
+    Reversed,
+    /// near / view depth: 1 at the near plane, 0 at infinity. Perspective only. Rays end at view depth `far` at the
+    /// latest: there is no medium beyond.
+    ReversedInfinite,
+}
+
+impl DepthRange {
+    /// True where nearer surfaces have larger values.
+    pub fn is_reversed(self) -> bool {
+        self != Self::Standard
+    }
+
+    /// What the depth buffer holds where nothing was drawn.
+    pub fn far_value(self) -> f32 {
+        if self.is_reversed() { 0.0 } else { 1.0 }
+    }
 }
 
 /// How view space becomes the picture. Depth runs along the viewing direction.
@@ -85,7 +109,7 @@ impl Camera {
                 near,
                 far,
             },
-            reversed_depth: true,
+            depth_range: DepthRange::Reversed,
         }
     }
 }

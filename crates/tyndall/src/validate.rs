@@ -5,7 +5,9 @@ use glam::DVec3;
 use crate::{
     cpu::{CpuInputs, GlassMap},
     error::PrepareError,
-    frame::{Camera, Emitter, Frame, Light, Medium, Phase, Projection, ShadowProjection},
+    frame::{
+        Camera, DepthRange, Emitter, Frame, Light, Medium, Phase, Projection, ShadowProjection,
+    },
     light::texture::TextureMapping,
     physics::medium::reals,
     techniques::{Backends, LightKind},
@@ -127,6 +129,12 @@ fn camera(camera: &Camera) -> Checked {
         "camera.projection.far",
         "a finite number > near",
         far,
+    )?;
+    require(
+        perspective || camera.depth_range != DepthRange::ReversedInfinite,
+        "camera.depth_range",
+        "Standard or Reversed, for an orthographic camera's far plane is finite",
+        camera.depth_range,
     )
 }
 

@@ -1,7 +1,7 @@
 //! A scene's own cameras and lights, in world space.
 
 use glam::{Affine3A, Vec3};
-use tyndall::frame::{Camera, Emitter, Projection};
+use tyndall::frame::{Camera, DepthRange, Emitter, Projection};
 
 use crate::{geometry::world_from_nodes, scene::Scene};
 
@@ -46,7 +46,7 @@ fn placed_camera(
         forward: turned([0.0, 0.0, -1.0], world_from_node)?,
         up: turned([0.0, 1.0, 0.0], world_from_node)?,
         projection,
-        reversed_depth: true,
+        depth_range: DepthRange::Reversed,
     })
 }
 

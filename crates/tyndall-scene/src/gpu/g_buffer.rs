@@ -88,7 +88,7 @@ impl GBufferPipelines {
         camera: &Camera,
         mut timer: Option<&mut PassTimer>,
     ) {
-        let reversed = camera.reversed_depth;
+        let reversed = camera.depth_range.is_reversed();
         let view = scene.view_bind_group(&ViewUniform::of_camera(camera));
 
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

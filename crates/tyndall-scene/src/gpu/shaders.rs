@@ -120,7 +120,7 @@ mod tests {
                     up,
                     far,
                     forward,
-                    reversed_depth,
+                    depth_range,
                     center,
                     orthographic,
                     sigma_t,

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 use tyndall::{
     LightInputs,
     camera::CameraRays,
-    frame::{Emitter, Frame, Light, Projection, ShadowProjection},
+    frame::{DepthRange, Emitter, Frame, Light, Projection, ShadowProjection},
     light::{
         LIGHT_RADIUS,
         texture::{MappingKind, TextureMapping},
@@ -33,7 +33,7 @@ pub(super) struct ShadeViewUniform {
     pub(super) up: [f32; 3],
     pub(super) far: f32,
     pub(super) forward: [f32; 3],
-    pub(super) reversed_depth: u32,
+    pub(super) depth_range: u32,
     pub(super) center: [f32; 3],
     pub(super) orthographic: u32,
     pub(super) sigma_t: [f32; 3],
@@ -71,7 +71,11 @@ impl ShadeViewUniform {
             up: floats(half_y * rays.up),
             far,
             forward: floats(rays.forward),
-            reversed_depth: frame.camera.reversed_depth.into(),
+            depth_range: match frame.camera.depth_range {
+                DepthRange::Standard => 0,
+                DepthRange::Reversed => 1,
+                DepthRange::ReversedInfinite => 2,
+            },
             center: floats(center_x * rays.right + center_y * rays.up),
             orthographic: orthographic.into(),
             sigma_t: floats(Optics::new(&frame.medium).sigma_t),

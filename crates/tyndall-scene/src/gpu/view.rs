@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DMat4, DVec3, DVec4, Vec3};
 use tyndall::{
     camera::CameraRays,
-    frame::{Camera, Emitter, Projection, ShadowProjection},
+    frame::{Camera, DepthRange, Emitter, Projection, ShadowProjection},
     shadow::faces,
 };
 
@@ -34,7 +34,7 @@ impl ViewUniform {
             Projection::Orthographic { .. } => (-rays.forward).extend(0.0),
         };
         let view_from_relative = DMat3::from_cols(rays.right, rays.up, rays.forward).transpose();
-        let clip_from_view = clip_from_view(&camera.projection, camera.reversed_depth);
+        let clip_from_view = clip_from_view(&camera.projection, camera.depth_range);
         Self::new(
             clip_from_view * DMat4::from_mat3(view_from_relative),
             camera.eye.into(),
@@ -101,47 +101,48 @@ fn light_origin(emitter: &Emitter, clip_from_world: DMat4) -> Vec3 {
 }
 
 /// Clip space from a view space whose z is depth.
-fn clip_from_view(projection: &Projection, reversed_depth: bool) -> DMat4 {
-    match *projection {
-        Projection::Perspective {
-            half_extent,
-            center,
-            near,
-            far,
-        } => {
-            let ([hx, hy], [cx, cy]) = (half_extent.map(f64::from), center.map(f64::from));
-            let (near, far) = (f64::from(near), f64::from(far));
-            // z_ndc = (scale * z + offset) / z is 0 at one plane and 1 at the other.
-            let (zero, one) = if reversed_depth {
-                (far, near)
+fn clip_from_view(projection: &Projection, depth_range: DepthRange) -> DMat4 {
+    let (Projection::Perspective {
+        half_extent,
+        center,
+        near,
+        far,
+    }
+    | Projection::Orthographic {
+        half_extent,
+        center,
+        near,
+        far,
+    }) = *projection;
+    let ([hx, hy], [cx, cy]) = (half_extent.map(f64::from), center.map(f64::from));
+    let (near, far) = (f64::from(near), f64::from(far));
+    // Depths at which the depth buffer holds 0 and 1.
+    let (zero, one) = if depth_range.is_reversed() {
+        (far, near)
+    } else {
+        (near, far)
+    };
+    let (x, y) = (DVec4::X / hx, DVec4::Y / hy);
+    match projection {
+        Projection::Perspective { .. } => {
+            // z_ndc = (scale * z + offset) / z
+            let (scale, offset) = if depth_range == DepthRange::ReversedInfinite {
+                (0.0, near)
             } else {
-                (near, far)
+                (one / (one - zero), -one * zero / (one - zero))
             };
-            let scale = one / (one - zero);
             DMat4::from_cols(
-                DVec4::new(1.0 / hx, 0.0, 0.0, 0.0),
-                DVec4::new(0.0, 1.0 / hy, 0.0, 0.0),
+                x,
+                y,
                 DVec4::new(-cx / hx, -cy / hy, scale, 1.0),
-                DVec4::new(0.0, 0.0, -scale * zero, 0.0),
+                DVec4::new(0.0, 0.0, offset, 0.0),
             )
         }
-        Projection::Orthographic {
-            half_extent,
-            center,
-            near,
-            far,
-        } => {
-            let ([hx, hy], [cx, cy]) = (half_extent.map(f64::from), center.map(f64::from));
-            let (near, far) = (f64::from(near), f64::from(far));
-            let (zero, one) = if reversed_depth {
-                (far, near)
-            } else {
-                (near, far)
-            };
+        Projection::Orthographic { .. } => {
             let scale = 1.0 / (one - zero);
             DMat4::from_cols(
-                DVec4::new(1.0 / hx, 0.0, 0.0, 0.0),
-                DVec4::new(0.0, 1.0 / hy, 0.0, 0.0),
+                x,
+                y,
                 DVec4::new(0.0, 0.0, scale, 0.0),
                 DVec4::new(-cx / hx, -cy / hy, -scale * zero, 1.0),
             )

@@ -32,12 +32,12 @@ use {buffers::Buffers, mesh::Meshes};
 #[non_exhaustive]
 pub enum LoadError {
     /// The file cannot be read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {cause}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// Why not.
-        source: std::io::Error,
+        /// Why not; not the error's `source`, for the message holds it.
+        cause: std::io::Error,
     },
     /// The file breaks the format's rules.
     #[error("{}: {place}: {problem}", path.display())]
@@ -64,9 +64,9 @@ pub enum LoadError {
 /// # Errors
 /// [`LoadError`] where a file is missing or broken or requires an extension that is not supported.
 pub fn load(path: &Path) -> Result<Scene, LoadError> {
-    let bytes = fs::read(path).map_err(|source| LoadError::Read {
+    let bytes = fs::read(path).map_err(|cause| LoadError::Read {
         path: path.to_owned(),
-        source,
+        cause,
     })?;
     read(&bytes, path).map_err(|refusal| refusal.in_file(path))
 }

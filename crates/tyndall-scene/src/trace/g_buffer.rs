@@ -138,7 +138,7 @@ impl Tracer {
 #[cfg(test)]
 mod tests {
     use glam::{Vec2, vec3};
-    use tyndall::frame::Projection;
+    use tyndall::frame::{DepthRange, Projection};
 
     use super::*;
     use crate::{
@@ -147,8 +147,8 @@ mod tests {
     };
 
     /// Looks along -z from z = 4; 90 degrees high and wide, or 8 m.
-    fn cameras() -> [Camera; 4] {
-        let at_origin = |perspective: bool, reversed_depth: bool| Camera {
+    fn cameras() -> [Camera; 5] {
+        let at_origin = |perspective: bool, depth_range: DepthRange| Camera {
             eye: [0.0, 0.0, 4.0],
             forward: [0.0, 0.0, -1.0],
             up: [0.0, 1.0, 0.0],
@@ -167,13 +167,14 @@ mod tests {
                     far: 16.0,
                 }
             },
-            reversed_depth,
+            depth_range,
         };
         [
-            at_origin(true, true),
-            at_origin(true, false),
-            at_origin(false, true),
-            at_origin(false, false),
+            at_origin(true, DepthRange::Reversed),
+            at_origin(true, DepthRange::Standard),
+            at_origin(false, DepthRange::Reversed),
+            at_origin(false, DepthRange::Standard),
+            at_origin(true, DepthRange::ReversedInfinite),
         ]
     }
 

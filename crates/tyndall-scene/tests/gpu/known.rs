@@ -3,7 +3,7 @@
 use glam::{Affine3A, DMat4, DVec3, Vec3};
 use tyndall::{
     cpu::LightTexture,
-    frame::{Camera, Emitter, Projection, ShadowProjection},
+    frame::{Camera, DepthRange, Emitter, Projection, ShadowProjection},
     gpu::PassTimer,
 };
 use tyndall_scene::{
@@ -50,8 +50,14 @@ fn shadow_map(
     read(gpu, target.texture())
 }
 
+const DEPTH_RANGES: [DepthRange; 3] = [
+    DepthRange::Standard,
+    DepthRange::Reversed,
+    DepthRange::ReversedInfinite,
+];
+
 /// At the origin, looking along -Z, 90 degrees each way.
-fn camera(perspective: bool, reversed_depth: bool) -> Camera {
+fn camera(perspective: bool, depth_range: DepthRange) -> Camera {
     let (half_extent, center, near, far) = ([1.0; 2], [0.0; 2], 0.5, 50.0);
     Camera {
         eye: [0.0; 3],
@@ -72,7 +78,7 @@ fn camera(perspective: bool, reversed_depth: bool) -> Camera {
                 far,
             }
         },
-        reversed_depth,
+        depth_range,
     }
 }
 
@@ -94,13 +100,14 @@ fn a_wall_has_its_depth_normal_and_colour() {
     let scene = Builder::default()
         .rectangle(corner, [edges[1], edges[0]], red)
         .build();
-    for (perspective, reversed, expected) in [
-        (true, false, 50.0 * 3.5 / (4.0 * 49.5)),
-        (true, true, 0.5 * 46.0 / (4.0 * 49.5)),
-        (false, false, 3.5 / 49.5),
-        (false, true, 46.0 / 49.5),
+    for (perspective, depth_range, expected) in [
+        (true, DepthRange::Standard, 50.0 * 3.5 / (4.0 * 49.5)),
+        (true, DepthRange::Reversed, 0.5 * 46.0 / (4.0 * 49.5)),
+        (true, DepthRange::ReversedInfinite, 0.5 / 4.0),
+        (false, DepthRange::Standard, 3.5 / 49.5),
+        (false, DepthRange::Reversed, 46.0 / 49.5),
     ] {
-        let targets = g_buffer(gpu, &scene, &camera(perspective, reversed), [8; 2]);
+        let targets = g_buffer(gpu, &scene, &camera(perspective, depth_range), [8; 2]);
         for depth in read(gpu, targets.depth()) {
             // lavapipe: equal to 6e-8.
             assert!((depth - expected as f32).abs() < 2e-7, "{depth} {expected}");
@@ -127,10 +134,9 @@ fn nothing_is_as_far_as_the_far_plane() {
     let Some(gpu) = device_or_skip("an empty G-buffer") else {
         return;
     };
-    for reversed in [false, true] {
-        let targets = g_buffer(gpu, &Scene::default(), &camera(true, reversed), [4; 2]);
-        let far = if reversed { 0.0 } else { 1.0 };
-        assert_eq!(read(gpu, targets.depth()), [far; 16]);
+    for depth_range in DEPTH_RANGES {
+        let targets = g_buffer(gpu, &Scene::default(), &camera(true, depth_range), [4; 2]);
+        assert_eq!(read(gpu, targets.depth()), [depth_range.far_value(); 16]);
         assert_eq!(read(gpu, targets.normal()), [0.0; 64]);
         assert_eq!(read(gpu, targets.view_tint()), [1.0; 64]);
     }
@@ -155,8 +161,8 @@ fn glass_before_the_first_surface_tints_the_view() {
     );
     let builder = rectangle(builder, -6.0, material(RED, Blocking::Opaque));
     let scene = rectangle(builder, -5.0, transmissive([1.0, 0.5, 0.25, 1.0])).build();
-    for reversed in [false, true] {
-        let targets = g_buffer(gpu, &scene, &camera(true, reversed), [4; 2]);
+    for depth_range in DEPTH_RANGES {
+        let targets = g_buffer(gpu, &scene, &camera(true, depth_range), [4; 2]);
         let tint = read(gpu, targets.view_tint());
         assert_eq!(
             texel(&tint, 4, 2, 1),
@@ -192,7 +198,7 @@ fn masked_surfaces_have_holes() {
             assert_eq!(depth == 0.0, hole, "pixel {i}: {depth}");
         }
     };
-    let targets = g_buffer(gpu, &scene, &camera(true, true), [8; 2]);
+    let targets = g_buffer(gpu, &scene, &camera(true, DepthRange::Reversed), [8; 2]);
     expect(&read(gpu, targets.depth()));
     let sun = SUN;
     expect(&shadow_map(gpu, &scene, &sun, &sun_projection(true), 8));
@@ -455,7 +461,7 @@ fn pictures_are_decoded_to_linear() {
         .texture([16; 2], |x, y| [(16 * y + x) as u8; 4])
         .rectangle(corner, edges, textured)
         .build();
-    let targets = g_buffer(gpu, &scene, &camera(true, true), [16; 2]);
+    let targets = g_buffer(gpu, &scene, &camera(true, DepthRange::Reversed), [16; 2]);
     let base_color = read(gpu, targets.base_color());
     let mut worst = 0.0_f64;
     for (code, texel) in base_color.chunks_exact(4).enumerate() {
@@ -478,7 +484,7 @@ fn nodes_move() {
         .build();
     let renderer = renderer(gpu, &scene);
     let targets = GBufferTargets::new(&gpu.device, [4; 2]).unwrap();
-    let camera = camera(false, false);
+    let camera = camera(false, DepthRange::Standard);
     for z in [2.0, 4.0] {
         scene.nodes[0].parent_from_local = Affine3A::from_translation(Vec3::new(0.0, 0.0, -z));
         renderer.place(&gpu.queue, &scene);
@@ -503,7 +509,12 @@ fn passes_are_timed_by_name() {
     let (projection, sun) = (sun_projection(true), SUN);
     let shadow = ShadowMapTarget::new(&gpu.device, &projection, [4; 2]).unwrap();
     record(gpu, |encoder| {
-        renderer.g_buffer(encoder, &targets, &camera(true, true), Some(&mut timer));
+        renderer.g_buffer(
+            encoder,
+            &targets,
+            &camera(true, DepthRange::Reversed),
+            Some(&mut timer),
+        );
         renderer.shadow_map(encoder, &shadow, &sun, &projection, Some(&mut timer));
     });
     assert_eq!(timer.names(), ["g-buffer", "view tint", "shadow map"]);

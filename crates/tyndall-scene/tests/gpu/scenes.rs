@@ -1,7 +1,7 @@
 //! Hand-made scenes, and cameras and lights among them.
 
 use glam::{Affine3A, DMat4, DVec3, Quat, Vec2, Vec3, dcamera::rh, vec2};
-use tyndall::frame::{Camera, Emitter, Projection, ShadowProjection};
+use tyndall::frame::{Camera, DepthRange, Emitter, Projection, ShadowProjection};
 use tyndall_scene::scene::{Blocking, Material, Mesh, Node, Primitive, Scene, Texture, Wrap};
 use tyndall_testkit::samples::in_box;
 
@@ -136,18 +136,23 @@ pub(crate) fn cameras() -> Vec<(&'static str, Camera)> {
         far: 30.0,
     };
     [
-        ("perspective", perspective, false),
-        ("perspective reversed", perspective, true),
-        ("orthographic", orthographic, false),
-        ("orthographic reversed", orthographic, true),
+        ("perspective", perspective, DepthRange::Standard),
+        ("perspective reversed", perspective, DepthRange::Reversed),
+        (
+            "perspective infinite",
+            perspective,
+            DepthRange::ReversedInfinite,
+        ),
+        ("orthographic", orthographic, DepthRange::Standard),
+        ("orthographic reversed", orthographic, DepthRange::Reversed),
     ]
-    .map(|(name, projection, reversed_depth)| {
+    .map(|(name, projection, depth_range)| {
         let camera = Camera {
             eye: [1.0, 2.0, 9.0],
             forward: [-0.1, -0.2, -1.0],
             up: [0.1, 1.0, 0.0],
             projection,
-            reversed_depth,
+            depth_range,
         };
         (name, camera)
     })

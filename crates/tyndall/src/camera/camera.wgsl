@@ -2,6 +2,7 @@
 
 const CAMERA_REVERSED_DEPTH: u32 = 1u;
 const CAMERA_ORTHOGRAPHIC: u32 = 2u;
+const CAMERA_INFINITE_DEPTH: u32 = 4u;
 
 struct Camera {
     right: vec3f,
@@ -27,6 +28,9 @@ fn camera_view_depth(depth: f32) -> f32 {
     let from_far = saturate(select(1.0 - depth, depth, reversed));
     if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
         return mix(camera.far, camera.near, from_far);
+    }
+    if (camera.flags & CAMERA_INFINITE_DEPTH) != 0u {
+        return camera.near / max(from_far, camera.near / camera.far);
     }
     return camera.near * camera.far / (camera.near + from_far * (camera.far - camera.near));
 }

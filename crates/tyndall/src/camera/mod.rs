@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    frame::{Camera, Projection},
+    frame::{Camera, DepthRange, Projection},
     physics::medium::reals,
 };
 
@@ -38,7 +38,7 @@ pub struct CameraRays {
     pub forward: DVec3,
     size: DVec2,
     projection: Projection,
-    reversed_depth: bool,
+    depth_range: DepthRange,
 }
 
 impl CameraRays {
@@ -55,7 +55,7 @@ impl CameraRays {
             forward,
             size: DVec2::new(f64::from(size[0]), f64::from(size[1])),
             projection: camera.projection,
-            reversed_depth: camera.reversed_depth,
+            depth_range: camera.depth_range,
         }
     }
 
@@ -137,21 +137,106 @@ impl CameraRays {
 
     /// View depth [m] of a depth-buffer value, clamped to the near and far planes.
     pub fn view_depth(&self, depth: f32) -> f64 {
-        let from_far = if self.reversed_depth {
+        let [near, far] = self.planes();
+        let from_far = if self.depth_range.is_reversed() {
             f64::from(depth)
         } else {
             1.0 - f64::from(depth)
         }
         .clamp(0.0, 1.0);
-        match self.projection {
-            Projection::Perspective { near, far, .. } => {
-                let (near, far) = (f64::from(near), f64::from(far));
-                near * far / (near + from_far * (far - near))
-            }
-            Projection::Orthographic { near, far, .. } => {
-                let (near, far) = (f64::from(near), f64::from(far));
-                far + from_far * (near - far)
-            }
+        match (self.projection, self.depth_range) {
+            (Projection::Orthographic { .. }, _) => far + from_far * (near - far),
+            (_, DepthRange::ReversedInfinite) => near / from_far.max(near / far),
+            _ => near * far / (near + from_far * (far - near)),
         }
+    }
+
+    /// What the depth buffer holds for a view depth [m] between the near and far planes: the inverse of
+    /// [`CameraRays::view_depth`].
+    pub fn depth_value(&self, view_depth: f64) -> f32 {
+        let [near, far] = self.planes();
+        let from_far = match (self.projection, self.depth_range) {
+            (Projection::Orthographic { .. }, _) => (far - view_depth) / (far - near),
+            (_, DepthRange::ReversedInfinite) => near / view_depth,
+            _ => near * (far - view_depth) / (view_depth * (far - near)),
+        };
+        (if self.depth_range.is_reversed() {
+            from_far
+        } else {
+            1.0 - from_far
+        }) as f32
+    }
+
+    /// View depths of the near and the far plane [m].
+    pub fn planes(&self) -> [f64; 2] {
+        let (Projection::Perspective { near, far, .. }
+        | Projection::Orthographic { near, far, .. }) = self.projection;
+        [near, far].map(f64::from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_values_are_view_depths_and_back() {
+        let perspective = |depth_range| {
+            let mut camera = Camera::perspective(
+                [0.0; 3],
+                [0.0, 0.0, -1.0],
+                [0.0, 1.0, 0.0],
+                1.0,
+                1.0,
+                0.5,
+                8.0,
+            );
+            camera.depth_range = depth_range;
+            camera
+        };
+        let flat = |depth_range| Camera {
+            projection: Projection::Orthographic {
+                half_extent: [1.0; 2],
+                center: [0.0; 2],
+                near: 0.5,
+                far: 8.0,
+            },
+            ..perspective(depth_range)
+        };
+        use DepthRange::{Reversed, ReversedInfinite, Standard};
+        // What the buffer holds at view depths 0.5, 2 and 8.
+        for (camera, values) in [
+            (perspective(Standard), [0.0, 0.8, 1.0]),
+            (perspective(Reversed), [1.0, 0.2, 0.0]),
+            (perspective(ReversedInfinite), [1.0, 0.25, 0.0625]),
+            (flat(Standard), [0.0, 0.2, 1.0]),
+            (flat(Reversed), [1.0, 0.8, 0.0]),
+        ] {
+            let rays = CameraRays::new(&camera, [4, 4]);
+            for (value, depth) in values.into_iter().zip([0.5, 2.0, 8.0]) {
+                assert!((rays.depth_value(depth) - value).abs() < 1e-7, "{camera:?}");
+                // f32 values near 1 tell 8 m from its neighbours to 8^2 / 0.5 * 2^-25 m.
+                assert!((rays.view_depth(value) - depth).abs() < 4e-6, "{camera:?}");
+            }
+            let far_value = camera.depth_range.far_value();
+            assert_eq!(rays.view_depth(far_value), 8.0, "{camera:?}");
+        }
+    }
+
+    #[test]
+    fn rays_end_at_the_far_plane_at_the_latest() {
+        let mut camera = Camera::perspective(
+            [0.0; 3],
+            [0.0, 0.0, -1.0],
+            [0.0, 1.0, 0.0],
+            1.0,
+            1.0,
+            0.5,
+            8.0,
+        );
+        camera.depth_range = DepthRange::ReversedInfinite;
+        let rays = CameraRays::new(&camera, [1, 1]);
+        assert_eq!(rays.view_depth(0.01), 8.0);
+        assert!((rays.ray(0, 0, 0.01).length - 8.0).abs() < 1e-12);
     }
 }

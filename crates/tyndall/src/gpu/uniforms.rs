@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3};
 
 use crate::{
     camera::CameraRays,
-    frame::{self, Emitter, Phase, Projection, ShadowProjection},
+    frame::{self, DepthRange, Emitter, Phase, Projection, ShadowProjection},
     light::texture::{MappingKind, TextureMapping},
     physics::medium::{Optics, reals},
     shadow,
@@ -94,6 +94,7 @@ impl LightVariant {
 
 const CAMERA_REVERSED_DEPTH: u32 = 1;
 const CAMERA_ORTHOGRAPHIC: u32 = 2;
+const CAMERA_INFINITE_DEPTH: u32 = 4;
 
 impl FrameUniform {
     pub(crate) fn new(frame: &frame::Frame, rays: &CameraRays, size: [u32; 2]) -> Self {
@@ -120,10 +121,10 @@ impl CameraUniform {
                 far,
             } => (CAMERA_ORTHOGRAPHIC, half_extent, center, near, far),
         };
-        let depth_flag = if camera.reversed_depth {
-            CAMERA_REVERSED_DEPTH
-        } else {
-            0
+        let depth_flags = match camera.depth_range {
+            DepthRange::Standard => 0,
+            DepthRange::Reversed => CAMERA_REVERSED_DEPTH,
+            DepthRange::ReversedInfinite => CAMERA_REVERSED_DEPTH | CAMERA_INFINITE_DEPTH,
         };
         Self {
             right: floats(rays.right),
@@ -131,7 +132,7 @@ impl CameraUniform {
             up: floats(rays.up),
             far,
             forward: floats(rays.forward),
-            flags: projection_flag | depth_flag,
+            flags: projection_flag | depth_flags,
             half_extent,
             center,
             size: size.map(|n| n as f32),

@@ -6,7 +6,7 @@ use glam::{Mat4, Vec3};
 use tyndall::{
     cpu::{self, CpuInputs, CpuLightInputs, GlassMap, LightTexture, ShadowMap},
     frame::{
-        Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection,
+        Camera, DepthRange, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection,
         ShadowProjection, TexturePlacement,
     },
     techniques::{Technique, Value},
@@ -131,12 +131,14 @@ fn media() -> [(&'static str, Medium); 4] {
 }
 
 /// Cameras in a world of some ten metres about the origin; `TARGET` is where the local lights are.
-fn cameras() -> [(&'static str, Camera); 5] {
+fn cameras() -> [(&'static str, Camera); 6] {
     let aspect = SIZE[0] as f32 / SIZE[1] as f32;
     let at =
         |eye, target| Camera::perspective(eye, target, [0.0, 1.0, 0.0], 1.0, aspect, 0.1, 30.0);
     let mut standard = at([-6.0, 1.0, 5.0], [3.0, 0.0, -3.0]);
-    standard.reversed_depth = false;
+    standard.depth_range = DepthRange::Standard;
+    let mut infinite = at([3.0, -2.0, -7.0], [-1.0, 1.5, 0.0]);
+    infinite.depth_range = DepthRange::ReversedInfinite;
     let mut flat = at([2.0, 3.0, 8.0], [0.0, 0.0, 0.0]);
     flat.projection = Projection::Orthographic {
         half_extent: [4.0 * aspect, 4.0],
@@ -148,6 +150,7 @@ fn cameras() -> [(&'static str, Camera); 5] {
         ("towards the light", at([0.5, 0.3, 7.0], LIGHT.to_array())),
         ("away from it", at([0.5, 2.5, -1.0], [1.0, 1.0, 9.0])),
         ("across, standard depth", standard),
+        ("from behind, infinite depth", infinite),
         ("orthographic", flat),
         ("straight up", at([0.2, -4.0, 0.1], [0.2, 4.0, 0.11])),
     ]
@@ -340,7 +343,7 @@ pub(crate) fn stage(
 ) -> Stage {
     Stage {
         name,
-        depth: depth(camera.reversed_depth),
+        depth: depth(camera.depth_range.is_reversed()),
         lights: vec![pictures(&light, glass)],
         frame: Frame {
             camera,
@@ -373,7 +376,7 @@ pub(crate) fn crowd() -> Stage {
     let lights: Vec<Light> = lights().into_iter().map(|(_, light)| light).collect();
     Stage {
         name: "all lights".into(),
-        depth: depth(camera.reversed_depth),
+        depth: depth(camera.depth_range.is_reversed()),
         lights: lights.iter().map(|l| pictures(l, true)).collect(),
         frame: Frame {
             camera,

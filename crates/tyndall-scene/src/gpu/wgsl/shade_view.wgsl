@@ -10,7 +10,8 @@ struct ShadeView {
     far: f32,
     // Unit viewing direction.
     forward: vec3f,
-    reversed_depth: u32,
+    // 0: 0 at the near plane, 1: 1 at the near plane, 2: near / view depth.
+    depth_range: u32,
     // The picture's centre off the viewing direction or axis, as `right` and `up`.
     center: vec3f,
     orthographic: u32,
@@ -48,7 +49,7 @@ fn shade_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 // Depth from the far plane's value, 0, to the near plane's, 1.
 fn shade_depth_from_far(pixel: vec2u) -> f32 {
     let depth = textureLoad(shade_depth, pixel, 0);
-    return select(1.0 - depth, depth, shade_view.reversed_depth == 1u);
+    return select(1.0 - depth, depth, shade_view.depth_range != 0u);
 }
 
 // From the viewing axis to the pixel's centre: at view depth 1 (perspective) or at any (orthographic) [m].
@@ -74,6 +75,9 @@ fn shade_point(pixel: vec2u, from_far: f32) -> vec3f {
     if shade_view.orthographic == 1u {
         return (far + from_far * (near - far)) * shade_view.forward + across;
     }
-    let view_depth = near * far / (near + from_far * (far - near));
-    return view_depth * (shade_view.forward + across);
+    let along = shade_view.forward + across;
+    if shade_view.depth_range == 2u {
+        return near / max(from_far, near / far) * along;
+    }
+    return near * far / (near + from_far * (far - near)) * along;
 }
