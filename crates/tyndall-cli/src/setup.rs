@@ -1,5 +1,7 @@
 //! From a shot to what the backends render: the scene, its acceleration structure, the frame and the lights' pictures.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use tyndall::{
     cpu::LightTexture,
@@ -22,12 +24,13 @@ use crate::{
     shot::{CameraBase, LightSpec, Origin, Problem, SceneCameras, SceneSource, Shot, ShotError},
 };
 
-/// A shot with everything it names loaded, and everything it leaves out filled in.
+/// A shot with everything it names loaded, and everything it leaves out filled in. Clones share the scene.
+#[derive(Clone)]
 pub struct Setup {
     /// The scene.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// The scene, ready to be hit by rays.
-    pub tracer: Tracer,
+    pub tracer: Arc<Tracer>,
     /// The frame. Its lights have shadow projections wherever maps of them can be made.
     pub frame: Frame,
     /// What belongs to each of the frame's lights.
@@ -37,6 +40,7 @@ pub struct Setup {
 }
 
 /// What belongs to a light besides its part of the frame.
+#[derive(Clone)]
 pub struct LightSetup {
     /// Width and height of a face of its shadow map [texels].
     pub map_size: [u32; 2],
@@ -91,8 +95,8 @@ impl Setup {
         };
         let lights = specs.iter().map(load_light).collect::<Result<_, _>>()?;
         Ok(Self {
-            scene,
-            tracer,
+            scene: Arc::new(scene),
+            tracer: Arc::new(tracer),
             frame,
             lights,
             size: shot.size,

@@ -3,6 +3,7 @@
 use tyndall::techniques::{Backends, TechniqueInfo};
 use tyndall_scene::gpu::{NoAdapter, connect};
 
+use super::gpu::DeviceErrors;
 use crate::{args::BackendChoice, failure::Failure};
 
 /// What renders.
@@ -15,9 +16,10 @@ pub enum Backend {
 
 /// A device and the adapter it came from.
 pub struct Gpu {
-    pub(super) adapter: AdapterDescription,
-    pub(super) device: wgpu::Device,
-    pub(super) queue: wgpu::Queue,
+    pub(crate) adapter: AdapterDescription,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    pub(crate) errors: DeviceErrors,
 }
 
 /// What an adapter says of itself.
@@ -93,6 +95,7 @@ impl Backend {
         let AdapterDescription { name, api, .. } = &adapter;
         eprintln!("backend: GPU {name}, {api} ({reason})");
         Ok(Self::Gpu(Box::new(Gpu {
+            errors: DeviceErrors::watch(&device),
             adapter,
             device,
             queue,

@@ -1,13 +1,10 @@
 //! The pipeline on the CPU: what the GPU rasterises is traced, with nothing installed.
 
 use tyndall::{
-    cpu::{CpuInputs, CpuLightInputs, GlassMap, ShadowMap},
+    cpu::{CpuInputs, CpuLightInputs, GlassMap, Progress, ShadowMap},
     frame::{Frame, Light},
 };
-use tyndall_scene::{
-    shading::shade,
-    trace::{GBuffer, GLASS_LAYERS},
-};
+use tyndall_scene::{shading::shade, trace::GLASS_LAYERS};
 
 use super::{Needs, Rendered, depth_layer, distances, rgb, transmittances};
 use crate::{failure::Failure, layer::Layer, picture::Picture, progress::Stages, setup::Setup};
@@ -25,7 +22,16 @@ pub(super) fn render(
     let maps = LightMaps::trace_all(setup, needs, stages);
     let lights = light_inputs(setup, &maps);
     let in_scatter = if needs.in_scatter {
-        in_scatter(setup, needs, &g_buffer, &lights, stages)?
+        let name = format!("in-scatter by {}", setup.frame.technique.info().name);
+        stages.run(&name, |progress| {
+            in_scatter(
+                setup,
+                setup.frame.clone(),
+                &g_buffer.depth,
+                &lights,
+                progress,
+            )
+        })?
     } else {
         Vec::new()
     };
@@ -56,11 +62,33 @@ pub(super) fn render(
     })
 }
 
+/// The pictures that in-scattered light is computed from.
+pub(crate) struct Buffers {
+    /// What a depth buffer holds, in the camera's convention.
+    pub(crate) depth: Vec<f32>,
+    /// One a light.
+    pub(crate) lights: Vec<LightMaps>,
+}
+
+impl Buffers {
+    /// Casts the rays of the camera and of every light.
+    pub(crate) fn trace(setup: &Setup, stages: &mut Stages) -> Self {
+        let (camera, size) = (&setup.frame.camera, setup.size);
+        let g_buffer = stages.run("trace depth", |progress| {
+            setup.tracer.g_buffer(camera, size, progress)
+        });
+        Self {
+            depth: g_buffer.depth,
+            lights: LightMaps::trace_all(setup, Needs::IN_SCATTER, stages),
+        }
+    }
+}
+
 /// What a light sees; nothing where nobody asks.
 #[derive(Default)]
-struct LightMaps {
-    shadow_map: Option<ShadowMap>,
-    glass: Option<GlassMap>,
+pub(crate) struct LightMaps {
+    pub(crate) shadow_map: Option<ShadowMap>,
+    pub(crate) glass: Option<GlassMap>,
 }
 
 impl LightMaps {
@@ -109,7 +137,8 @@ impl LightMaps {
     }
 }
 
-fn light_inputs<'a>(setup: &'a Setup, maps: &'a [LightMaps]) -> Vec<CpuLightInputs<'a>> {
+/// The lights' pictures, as tyndall takes them.
+pub(crate) fn light_inputs<'a>(setup: &'a Setup, maps: &'a [LightMaps]) -> Vec<CpuLightInputs<'a>> {
     maps.iter()
         .zip(&setup.lights)
         .map(|(maps, light)| CpuLightInputs {
@@ -120,35 +149,25 @@ fn light_inputs<'a>(setup: &'a Setup, maps: &'a [LightMaps]) -> Vec<CpuLightInpu
         .collect()
 }
 
-fn in_scatter(
+/// In-scattered light of a frame of the setup [W/(m^2 sr)]. A light whose map isn't among `lights` promises none.
+pub(crate) fn in_scatter(
     setup: &Setup,
-    needs: Needs,
-    g_buffer: &GBuffer,
+    mut frame: Frame,
+    depth: &[f32],
     lights: &[CpuLightInputs<'_>],
-    stages: &mut Stages,
+    progress: Progress<'_>,
 ) -> Result<Vec<[f32; 3]>, Failure> {
-    let mut frame = setup.frame.clone();
-    if !needs.light_maps {
-        forget_shadow_maps(&mut frame);
+    for (light, inputs) in frame.lights.iter_mut().zip(lights) {
+        light.shadow = light.shadow.filter(|_| inputs.shadow_map.is_some());
     }
     let inputs = CpuInputs {
         size: setup.size,
-        depth: &g_buffer.depth,
+        depth,
         lights,
-        occluders: Some(&setup.tracer),
+        occluders: Some(&*setup.tracer),
     };
-    let name = format!("in-scatter by {}", frame.technique.info().name);
-    let result = stages.run(&name, |progress| {
-        tyndall::cpu::render(&frame, &inputs, progress)
-    });
+    let result = tyndall::cpu::render(&frame, &inputs, progress);
     Ok(rgb(&result.map_err(Failure::input)?.pixels))
-}
-
-/// For techniques that trace shadows: a frame whose lights promise no maps needs none.
-fn forget_shadow_maps(frame: &mut Frame) {
-    for light in &mut frame.lights {
-        light.shadow = None;
-    }
 }
 
 /// surface * transmittance + in-scatter, in double precision.

@@ -1,10 +1,11 @@
 //! From a setup to layers, on the GPU or on the CPU.
 
 mod backend;
-mod cpu;
-mod gpu;
+pub(crate) mod cpu;
+pub(crate) mod gpu;
 
 pub use backend::{AdapterDescription, Backend, Gpu};
+pub(crate) use cpu::{Buffers, LightMaps};
 
 use tyndall::{
     camera::CameraRays,
@@ -50,13 +51,20 @@ pub fn render(
 
 /// The parts of the pipeline that the layers need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Needs {
+pub(crate) struct Needs {
     in_scatter: bool,
     surface: bool,
     light_maps: bool,
 }
 
 impl Needs {
+    /// In-scattered light by any technique, and nothing else.
+    pub(crate) const IN_SCATTER: Self = Self {
+        in_scatter: true,
+        surface: false,
+        light_maps: true,
+    };
+
     fn of(layers: &[Layer], technique: &Technique) -> Self {
         let any = |wanted: [Layer; 2]| layers.iter().any(|layer| wanted.contains(layer));
         let in_scatter = any([Layer::Final, Layer::Inscatter]);
@@ -69,7 +77,7 @@ impl Needs {
     }
 }
 
-fn reads_shadow_maps(technique: &Technique) -> bool {
+pub(crate) fn reads_shadow_maps(technique: &Technique) -> bool {
     !matches!(
         technique,
         Technique::Reference(reference::Params {

@@ -1,9 +1,15 @@
 //! The textures that passes draw on, of one size each.
 
-use tyndall::frame::ShadowProjection;
-use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
+use tyndall::{
+    cpu::{GlassMap, ShadowMap},
+    frame::ShadowProjection,
+};
+use wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages, TextureView};
 
-use super::error::GpuSceneError;
+use super::{
+    error::GpuSceneError,
+    readback::{self, ReadbackError},
+};
 use crate::trace::GLASS_LAYERS;
 
 pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
@@ -153,6 +159,17 @@ impl ShadowMapTarget {
         &self.view
     }
 
+    /// The map as the CPU has it. Waits for the device.
+    ///
+    /// # Errors
+    /// [`ReadbackError`].
+    pub fn read(&self, device: &Device, queue: &Queue) -> Result<ShadowMap, ReadbackError> {
+        Ok(ShadowMap {
+            size: self.size,
+            depth: readback::texture_f32(device, queue, &self.texture)?,
+        })
+    }
+
     /// Bytes of the texture.
     pub fn bytes(&self) -> u64 {
         texture_bytes(&self.texture)
@@ -196,6 +213,20 @@ impl GlassMapTarget {
         &self.view
     }
 
+    /// The map as the CPU has it. Waits for the device.
+    ///
+    /// # Errors
+    /// [`ReadbackError`].
+    pub fn read(&self, device: &Device, queue: &Queue) -> Result<GlassMap, ReadbackError> {
+        let words = readback::texture_u32(device, queue, &self.texture)?;
+        let (texels, _) = words.as_chunks();
+        Ok(GlassMap {
+            size: [self.texture.width(), self.texture.height()],
+            layers: GLASS_LAYERS,
+            texels: texels.iter().copied().map(unpack_glass).collect(),
+        })
+    }
+
     /// Bytes of the textures.
     pub fn bytes(&self) -> u64 {
         texture_bytes(&self.texture) + texture_bytes(&self.depth.texture)
@@ -230,6 +261,12 @@ impl Absent {
                 .create_view(&wgpu::TextureViewDescriptor::default()),
         }
     }
+}
+
+/// Depth's bits and the tint's square roots in 10 bits each, as the CPU has them: linear tint, then depth.
+fn unpack_glass([depth, tint]: [u32; 2]) -> [f32; 4] {
+    let [r, g, b] = [0, 10, 20].map(|shift| ((tint >> shift & 1023) as f32 / 1023.0).powi(2));
+    [r, g, b, f32::from_bits(depth)]
 }
 
 fn face_count(projection: &ShadowProjection) -> u32 {

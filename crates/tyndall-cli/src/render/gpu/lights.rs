@@ -1,0 +1,69 @@
+//! What belongs to each light on the GPU.
+
+use tyndall::LightInputs;
+use tyndall_scene::gpu::{GlassMapTarget, SceneRenderer, ShadowMapTarget, upload_light_texture};
+use wgpu::TextureView;
+
+use crate::{
+    failure::Failure,
+    render::{Gpu, Needs},
+    setup::Setup,
+};
+
+/// What belongs to one light.
+pub(super) struct LightTargets {
+    pub(super) shadow_map: Option<ShadowMapTarget>,
+    pub(super) glass: Option<GlassMapTarget>,
+    texture: Option<TextureView>,
+}
+
+impl LightTargets {
+    pub(super) fn new(
+        setup: &Setup,
+        index: usize,
+        gpu: &Gpu,
+        renderer: &SceneRenderer,
+        needs: Needs,
+    ) -> Result<Self, Failure> {
+        let Gpu { device, queue, .. } = gpu;
+        let (light, extra) = (&setup.frame.lights[index], &setup.lights[index]);
+        let projection = light.shadow.as_ref().filter(|_| needs.light_maps);
+        let shadow_map = projection
+            .map(|projection| ShadowMapTarget::new(device, projection, extra.map_size))
+            .transpose()
+            .map_err(Failure::device)?;
+        let glass = shadow_map
+            .as_ref()
+            .filter(|_| renderer.has_tinted_glass())
+            .map(|shadow_map| GlassMapTarget::new(device, shadow_map))
+            .transpose()
+            .map_err(Failure::device)?;
+        let texture = extra
+            .texture
+            .as_ref()
+            .map(|texture| upload_light_texture(device, queue, texture))
+            .transpose()
+            .map_err(Failure::device)?;
+        Ok(Self {
+            shadow_map,
+            glass,
+            texture: texture.map(|texture| texture.create_view(&Default::default())),
+        })
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.shadow_map.as_ref().map_or(0, ShadowMapTarget::bytes)
+            + self.glass.as_ref().map_or(0, GlassMapTarget::bytes)
+    }
+}
+
+pub(super) fn light_inputs(lights: &[LightTargets]) -> Vec<LightInputs<'_>> {
+    lights
+        .iter()
+        .map(|light| LightInputs {
+            shadow_map: light.shadow_map.as_ref().map(ShadowMapTarget::view),
+            glass: light.glass.as_ref().map(GlassMapTarget::view),
+            texture: light.texture.as_ref(),
+        })
+        .collect()
+}
