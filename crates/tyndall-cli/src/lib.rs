@@ -6,6 +6,7 @@ pub mod commands;
 pub mod failure;
 pub mod layer;
 pub mod light_texture;
+pub mod measure;
 pub mod output;
 pub mod picture;
 pub mod progress;

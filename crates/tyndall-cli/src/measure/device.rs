@@ -1,0 +1,160 @@
+//! The stage's GPU side.
+
+use std::time::Instant;
+
+use tyndall::{Effect, EffectView, FrameInputs, frame::Frame, techniques::Technique};
+use tyndall_scene::gpu::readback;
+use wgpu::{CommandEncoder, PollType};
+
+use super::{limit::Limit, timing::FrameTime};
+use crate::{
+    failure::Failure,
+    picture::Picture,
+    render::{
+        Buffers, Gpu, Needs,
+        gpu::{Timestamps, World, new_effect, picture, target_format},
+    },
+    setup::Setup,
+};
+
+/// A shot on a device, its depth buffer and shadow maps drawn.
+pub(super) struct DeviceStage<'a> {
+    setup: &'a Setup,
+    gpu: &'a Gpu,
+    world: World,
+    effect: Effect,
+    limit: Limit,
+    drawn: Vec<(String, f64)>,
+}
+
+/// A technique with the textures it works on.
+pub(super) struct DeviceTechnique<'a> {
+    stage: &'a DeviceStage<'a>,
+    frame: Frame,
+    view: EffectView,
+    timestamps: Timestamps,
+}
+
+impl<'a> DeviceStage<'a> {
+    pub(super) fn new(setup: &'a Setup, gpu: &'a Gpu) -> Result<Self, Failure> {
+        gpu.errors.else_result(Self::draw(setup, gpu))
+    }
+
+    fn draw(setup: &'a Setup, gpu: &'a Gpu) -> Result<Self, Failure> {
+        let format = target_format(&gpu.device);
+        let world = World::new(setup, gpu, Needs::IN_SCATTER, format)?;
+        let mut timestamps = Timestamps::new(&gpu.device);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        world.draw_light_maps(setup, &mut encoder, timestamps.timer());
+        world.draw_g_buffer(setup, &mut encoder, timestamps.timer());
+        finish(gpu, encoder, &timestamps)?;
+        Ok(Self {
+            setup,
+            gpu,
+            effect: new_effect(&gpu.device, format)?,
+            limit: Limit::new(&gpu.device, &world),
+            drawn: timestamps.read(&gpu.device, &gpu.queue)?,
+            world,
+        })
+    }
+
+    /// Each pass that drew the shadow maps and the depth buffer, and its time [ms].
+    pub(super) fn drawn(&self) -> &[(String, f64)] {
+        &self.drawn
+    }
+
+    pub(super) fn read(&self) -> Result<Buffers, Failure> {
+        self.gpu.errors.else_result(self.world.read(self.gpu))
+    }
+
+    pub(super) fn technique(
+        &'a self,
+        technique: &Technique,
+    ) -> Result<DeviceTechnique<'a>, Failure> {
+        let view = self.effect.create_view(&self.gpu.device, self.setup.size);
+        Ok(DeviceTechnique {
+            stage: self,
+            frame: Frame {
+                technique: technique.clone(),
+                ..self.setup.frame.clone()
+            },
+            view: view.map_err(Failure::device)?,
+            timestamps: Timestamps::new(&self.gpu.device),
+        })
+    }
+
+    pub(super) fn has_limit(&self) -> bool {
+        !self.limit.is_empty()
+    }
+
+    /// One frame of the limit.
+    pub(super) fn limit_frame(&self, timestamps: &mut Timestamps) -> Result<FrameTime, Failure> {
+        self.frame(timestamps, |encoder, timestamps| {
+            self.limit.record(encoder, timestamps.timer());
+            Ok(())
+        })
+    }
+
+    pub(super) fn timestamps(&self) -> Timestamps {
+        Timestamps::new(&self.gpu.device)
+    }
+
+    /// Times a frame from before it is prepared and recorded until the device is done.
+    fn frame(
+        &self,
+        timestamps: &mut Timestamps,
+        record: impl FnOnce(&mut CommandEncoder, &mut Timestamps) -> Result<(), Failure>,
+    ) -> Result<FrameTime, Failure> {
+        let start = Instant::now();
+        timestamps.reset();
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        record(&mut encoder, timestamps)?;
+        let done = finish(self.gpu, encoder, timestamps);
+        self.gpu.errors.else_result(done)?;
+        let wall = start.elapsed().as_secs_f64() * 1e3;
+        let passes = timestamps.read(&self.gpu.device, &self.gpu.queue)?;
+        Ok(FrameTime { wall, passes })
+    }
+}
+
+impl DeviceTechnique<'_> {
+    pub(super) fn frame(&mut self) -> Result<FrameTime, Failure> {
+        let Self {
+            stage,
+            frame,
+            view,
+            timestamps,
+        } = self;
+        stage.frame(timestamps, |encoder, timestamps| {
+            let inputs = FrameInputs {
+                depth: stage.world.g_buffer().depth_view(),
+                lights: &stage.world.light_inputs(),
+            };
+            let Gpu { device, queue, .. } = stage.gpu;
+            let prepared = stage.effect.prepare(device, queue, view, &inputs, frame);
+            prepared.map_err(Failure::input)?;
+            stage.effect.record(encoder, view, timestamps.timer());
+            Ok(())
+        })
+    }
+
+    /// The frame rendered last.
+    pub(super) fn in_scatter(&self) -> Result<Picture, Failure> {
+        let Gpu { device, queue, .. } = self.stage.gpu;
+        let channels = readback::texture_f32(device, queue, self.view.output().texture());
+        let channels = channels.map_err(Failure::device)?;
+        Ok(picture(self.view.size(), &channels))
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.view.bytes()
+    }
+}
+
+/// Submits the passes and waits for them and their timestamps.
+fn finish(gpu: &Gpu, mut encoder: CommandEncoder, timestamps: &Timestamps) -> Result<(), Failure> {
+    timestamps.resolve(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    let waited = gpu.device.poll(PollType::wait_indefinitely());
+    waited.map(|_| ()).map_err(Failure::device)
+}

@@ -1,0 +1,177 @@
+//! Equal quality and equal time: what brute force would have needed, or would have got.
+//!
+//! The *equal-quality* step count is the smallest whose error is at most the technique's. Marching's error falls like
+//! 1 / N, but with noise: a step more can hit or miss a thin shaft. So the search is defined by what it does: steps are
+//! doubled from 1 until the error is small enough, and between the last two counts bisected until they are within 3 %.
+//! The count that is reported meets the target; one 3 % smaller was seen not to.
+//!
+//! The *equal-time* step count is where the line through two timed counts meets the technique's time: marching takes a
+//! fixed time and the same again for every step.
+
+use tyndall::techniques::{Technique, ray_march};
+use tyndall_testkit::metrics::PictureError;
+
+use super::{Budget, Stage, error_of};
+use crate::{failure::Failure, picture::Picture};
+
+/// The most steps that are tried.
+pub const MAX_STEPS: u32 = 16_384;
+
+/// Bisection ends where the counts on either side of the target differ by this share.
+const RESOLUTION: f64 = 0.03;
+
+/// Step counts through which the line of marching's time is drawn.
+const TIMED_STEPS: [u32; 2] = [8, 64];
+
+/// What brute force needs for the same quality.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EqualQuality {
+    /// The step count; [`MAX_STEPS`] where even that is not good enough.
+    pub steps: u32,
+    /// Errors at that count.
+    pub error: PictureError,
+    /// Whether they meet the target.
+    pub reached: bool,
+}
+
+/// What brute force gets in the same time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EqualTime {
+    /// The step count.
+    pub steps: u32,
+    /// Errors at that count.
+    pub error: PictureError,
+}
+
+/// Ray marching in equal steps.
+pub fn ray_march(steps: u32) -> Technique {
+    Technique::RayMarch(ray_march::Params {
+        steps,
+        ..Default::default()
+    })
+}
+
+/// Searches for the fewest steps whose relMAE against `truth`, the converged picture of the stage's shadow maps, is at
+/// most `target`.
+///
+/// # Errors
+/// [`Failure`] where the stage can't march the shot.
+pub fn equal_quality(
+    stage: &Stage<'_>,
+    target: f64,
+    truth: &Picture,
+) -> Result<EqualQuality, Failure> {
+    let search = fewest_steps(|steps| {
+        let error = error_at(stage, steps, truth)?;
+        Ok((error, error.rel_mae <= target))
+    });
+    search.map(|(steps, error, reached)| EqualQuality {
+        steps,
+        error,
+        reached,
+    })
+}
+
+/// Marching's errors at the step count that takes as long as `milliseconds`.
+///
+/// # Errors
+/// [`Failure`] where the stage can't march the shot.
+pub fn equal_time(
+    stage: &Stage<'_>,
+    milliseconds: f64,
+    truth: &Picture,
+    budget: &Budget,
+) -> Result<EqualTime, Failure> {
+    let timings = stage.time(&TIMED_STEPS.map(ray_march), budget)?.techniques;
+    let points: Vec<f64> = timings
+        .iter()
+        .map(|(_, timing)| timing.total().median)
+        .collect();
+    let steps = steps_in(milliseconds, [points[0], points[1]]);
+    let error = error_at(stage, steps, truth)?;
+    Ok(EqualTime { steps, error })
+}
+
+fn error_at(stage: &Stage<'_>, steps: u32, truth: &Picture) -> Result<PictureError, Failure> {
+    error_of(&stage.in_scatter(&ray_march(steps))?, truth)
+}
+
+/// Where the line through the times of [`TIMED_STEPS`] meets a time [ms].
+fn steps_in(milliseconds: f64, [few, many]: [f64; 2]) -> u32 {
+    let [n_few, n_many] = TIMED_STEPS.map(f64::from);
+    let slope = (many - few) / (n_many - n_few);
+    let steps = n_few + (milliseconds - few) / slope;
+    steps.clamp(1.0, MAX_STEPS.into()) as u32
+}
+
+/// Doubling, then bisection. `measure` gives what was measured at a count, and whether it is good enough; so does the
+/// result, with the count itself.
+fn fewest_steps<T: Copy, E>(
+    mut measure: impl FnMut(u32) -> Result<(T, bool), E>,
+) -> Result<(u32, T, bool), E> {
+    let (mut too_few, mut steps) = (0, 1);
+    let (mut best, mut enough) = measure(steps)?;
+    while !enough && steps < MAX_STEPS {
+        too_few = steps;
+        steps *= 2;
+        (best, enough) = measure(steps)?;
+    }
+    if !enough {
+        return Ok((steps, best, false));
+    }
+    while steps - too_few > 1 && f64::from(steps - too_few) > RESOLUTION * f64::from(steps) {
+        let middle = too_few + (steps - too_few) / 2;
+        match measure(middle)? {
+            (found, true) => (steps, best) = (middle, found),
+            (_, false) => too_few = middle,
+        }
+    }
+    Ok((steps, best, true))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::*;
+
+    fn search(good_enough: impl Fn(u32) -> bool) -> (u32, bool, u32) {
+        let mut evaluations = 0;
+        let (steps, found, reached) = fewest_steps(|steps| {
+            evaluations += 1;
+            Ok::<_, Infallible>((steps, good_enough(steps)))
+        })
+        .unwrap();
+        assert_eq!(found, steps, "the errors belong to the count");
+        (steps, reached, evaluations)
+    }
+
+    #[test]
+    fn the_search_finds_the_threshold_within_3_percent() {
+        for threshold in [1, 2, 3, 5, 31, 32, 33, 100, 257, 511, 512, 5000, MAX_STEPS] {
+            let (steps, reached, evaluations) = search(|steps| steps >= threshold);
+            assert!(reached && steps >= threshold, "{threshold}: {steps}");
+            let excess = f64::from(steps - threshold) / f64::from(threshold);
+            assert!(excess <= RESOLUTION, "{threshold}: {steps}");
+            assert!(evaluations <= 21, "{threshold}: {evaluations}");
+        }
+    }
+
+    #[test]
+    fn what_no_count_reaches_is_said() {
+        assert_eq!(search(|_| false), (MAX_STEPS, false, 15));
+    }
+
+    #[test]
+    fn time_is_a_line_in_the_steps() {
+        let time = |steps: f64| 2.0 + 0.25 * steps;
+        let points = TIMED_STEPS.map(|steps| time(steps.into()));
+        for steps in [1, 8, 40, 64, 1000] {
+            // Half a step more, so that rounding cannot take one away.
+            assert_eq!(steps_in(time(f64::from(steps) + 0.5), points), steps);
+        }
+        assert_eq!(steps_in(0.0, points), 1);
+        assert_eq!(steps_in(1e9, points), MAX_STEPS);
+        assert_eq!(steps_in(5.0, [1.0, 1.0]), MAX_STEPS, "no slope");
+    }
+}

@@ -1,0 +1,23 @@
+//! Measuring: a shot set up once ([`Stage`]), then rendered and [timed](Timings) by any technique, and the
+//! [errors](error_of) of its pictures; how many steps brute force needs for the [same error](equal_quality)
+//! or the [same time](equal_time).
+//!
+//! All techniques of a stage see the same depth buffer and the same shadow maps: those that run on the CPU are handed
+//! the GPU's, read back. What they differ in is then theirs alone.
+
+mod device;
+mod equal;
+mod error;
+mod limit;
+mod stage;
+mod timing;
+
+#[cfg(test)]
+mod tests;
+
+pub use equal::{EqualQuality, EqualTime, MAX_STEPS, equal_quality, equal_time, ray_march};
+pub use error::error_of;
+pub use stage::{Place, Stage};
+pub use timing::{Budget, Spread, Timing, Timings};
+pub use tyndall::techniques::reference::Visibility;
+pub use tyndall_testkit::metrics::PictureError;
