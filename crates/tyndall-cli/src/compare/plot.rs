@@ -13,7 +13,7 @@ use super::{ErrorMap, Report, error_map::FLOOR};
 use crate::measure::PictureError;
 
 /// Width and height of a plot [pixels].
-const SIZE: (u32, u32) = (680, 420);
+const SIZE: (u32, u32) = (640, 440);
 /// Width and height of a legend [pixels].
 const LEGEND: (u32, u32) = (560, 64);
 /// Colours that are told apart by all common kinds of colour vision (Okabe & Ito 2008), on light and on dark paper.
@@ -85,7 +85,7 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
     let points = || series.iter().flat_map(|series| &series.points);
     let times = decades(points().map(|point| point.time));
     let ends = times.clone();
-    let floor = report.floor.as_ref().map(|errors| kind.of(errors));
+    let floor = report.floor.as_ref().map(|errors| 100.0 * kind.of(errors));
     let floor = floor.filter(|error| is_placed(*error));
     let errors = decades(points().map(|point| point.error).chain(floor));
     let mut svg = String::new();
@@ -93,18 +93,18 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
-            .x_label_area_size(44)
-            .y_label_area_size(72)
+            .x_label_area_size(52)
+            .y_label_area_size(84)
             .build_cartesian_2d(times.log_scale(), errors.log_scale())?;
         chart
             .configure_mesh()
             .axis_style(INK)
             .bold_line_style(INK.mix(0.16))
             .light_line_style(INK.mix(0.05))
-            .label_style(("sans-serif", 15))
-            .axis_desc_style(("sans-serif", 16))
+            .label_style(("sans-serif", 18))
+            .axis_desc_style(("sans-serif", 19))
             .x_desc("median time [ms]")
-            .y_desc(kind.name())
+            .y_desc(format!("{} [%]", kind.name()))
             .x_label_formatter(&number)
             .y_label_formatter(&number)
             .draw()?;
@@ -121,10 +121,10 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
             let mark = |position| Circle::new(position, 4, color.filled());
             chart
                 .draw_series(LineSeries::new(positions(), color.stroke_width(2)))?
-                .label(series.name)
+                .label(&series.name)
                 .legend(|(x, y)| Circle::new((x + 8, y), 5, color.filled()));
             chart.draw_series(positions().map(mark))?;
-            let font = ("sans-serif", 13).into_text_style(&area);
+            let font = ("sans-serif", 16).into_text_style(&area);
             let font = font.color(color).pos(Pos::new(HPos::Left, VPos::Bottom));
             chart.draw_series(series.points.iter().map(|point| {
                 let offset = Text::new(point.label.to_owned(), (7, -3), font.clone());
@@ -134,7 +134,7 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperRight)
-            .label_font(("sans-serif", 15))
+            .label_font(("sans-serif", 18))
             .background_style(TRANSPARENT)
             .border_style(TRANSPARENT)
             .draw()?;
@@ -173,7 +173,7 @@ pub fn legend(map: ErrorMap) -> Result<String, PlotError> {
             .disable_mesh()
             .disable_y_axis()
             .axis_style(INK)
-            .label_style(("sans-serif", 15))
+            .label_style(("sans-serif", 18))
             .x_labels((to - from) as usize + 1)
             .x_label_formatter(&|decade| tick(*decade))
             .draw()?;
@@ -201,7 +201,8 @@ fn number(value: &f64) -> String {
 
 /// A technique's line.
 struct Series<'a> {
-    name: &'a str,
+    /// The technique and where it ran.
+    name: String,
     points: Vec<Point<'a>>,
 }
 
@@ -209,6 +210,7 @@ struct Series<'a> {
 struct Point<'a> {
     /// Milliseconds.
     time: f64,
+    /// Percent.
     error: f64,
     label: &'a str,
 }
@@ -218,13 +220,13 @@ fn series(report: &Report, kind: ErrorKind) -> Vec<Series<'_>> {
     for row in &report.rows {
         let point = Point {
             time: row.timing.total().median,
-            error: kind.of(&row.errors),
+            error: 100.0 * kind.of(&row.errors),
             label: row.setting.varied.as_ref().map_or("", |(_, value)| value),
         };
         if !is_placed(point.time) || !is_placed(point.error) {
             continue;
         }
-        let name = row.setting.technique.as_str();
+        let name = format!("{} ({})", row.setting.technique, row.timing.place.name());
         match all.iter_mut().find(|series| series.name == name) {
             Some(series) => series.points.push(point),
             None => all.push(Series {
@@ -251,7 +253,9 @@ fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     }
     let low = low.log10().floor();
     let high = high.log10().ceil().max(low + 1.0);
-    10.0_f64.powf(low)..10.0_f64.powf(high)
+    // A little more at both ends, or rounding costs the axis its first label.
+    let power = |exponent: f64| 10.0_f64.powf(exponent);
+    power(low) * (1.0 - 1e-6)..power(high) * (1.0 + 1e-6)
 }
 
 #[cfg(test)]
@@ -267,7 +271,10 @@ mod tests {
             (&[10.0, 20.0], 10.0..100.0),
             (&[], 1.0..10.0),
         ] {
-            assert_eq!(decades(values.iter().copied()), range);
+            let found = decades(values.iter().copied());
+            for (found, expected) in [(found.start, range.start), (found.end, range.end)] {
+                assert!((found / expected - 1.0).abs() < 2e-6, "{found} {expected}");
+            }
         }
     }
 

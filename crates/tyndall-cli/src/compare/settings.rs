@@ -11,6 +11,9 @@ const QUALITY: &[(&str, &[i64])] = &[
     ("resolution", &[64, 128, 256, 512]),
 ];
 
+/// The value that leaves a count to the technique.
+const AUTOMATIC: i64 = 0;
+
 /// A technique to be compared, and what to call it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
@@ -32,7 +35,10 @@ pub fn candidates(technique: &Technique) -> Vec<Candidate> {
     if !techniques.contains(technique) {
         techniques.push(technique.clone());
     }
-    techniques.sort_by_key(|technique| integer(technique, key));
+    techniques.sort_by_key(|technique| match integer(technique, key) {
+        Some(AUTOMATIC) => i64::MAX,
+        value => value.unwrap_or(0),
+    });
     techniques
         .into_iter()
         .map(|technique| candidate(technique, Some(key)))
@@ -53,9 +59,13 @@ pub fn candidate(technique: Technique, key: Option<&str>) -> Candidate {
         .map(|param| (param.key.to_owned(), text(&param.value)))
         .collect();
     let varied = parameters.iter().find(|(k, _)| Some(k.as_str()) == key);
+    let varied = varied.map(|(key, value)| match integer(&technique, key) {
+        Some(AUTOMATIC) => (key.clone(), "auto".to_owned()),
+        _ => (key.clone(), value.clone()),
+    });
     let setting = Setting {
         technique: technique.info().name.to_owned(),
-        varied: varied.cloned(),
+        varied,
         parameters,
     };
     Candidate { technique, setting }
@@ -120,6 +130,13 @@ mod tests {
                 .parameters
                 .contains(&("spacing".to_owned(), "equal".to_owned()))
         );
+    }
+
+    #[test]
+    fn what_the_technique_chooses_itself_comes_last_and_is_called_so() {
+        let candidates = candidates(&Technique::from_name("min-max").unwrap());
+        let last = &candidates.last().unwrap().setting;
+        assert_eq!(last.label(), "min-max samples auto");
     }
 
     #[test]

@@ -107,14 +107,14 @@ fn line(row: &Row, report: &Report) -> String {
 
 fn cell(column: &Column, row: &Row, report: &Report) -> String {
     let value = (column.value)(row);
-    let values = report.rows.iter().filter_map(column.value);
-    let best = values.fold(f64::INFINITY, f64::min);
-    let (class, mark) = match value {
-        Some(value) if value == best && report.rows.len() > 1 => (
-            " class=\"best\"",
-            " <span title=\"best of the column\">\u{25c6}</span>",
-        ),
-        _ => ("", ""),
+    let values = || report.rows.iter().filter_map(column.value);
+    let best = values().fold(f64::INFINITY, f64::min);
+    let is_best = value == Some(best) && values().any(|other| other > best);
+    let (class, mark) = if is_best {
+        let mark = " <span title=\"best of the column\">\u{25c6}</span>";
+        (" class=\"best\"", mark)
+    } else {
+        ("", "")
     };
     let sort = value.unwrap_or(f64::INFINITY);
     let text = Html::text(&(column.text)(row));
@@ -124,7 +124,7 @@ fn cell(column: &Column, row: &Row, report: &Report) -> String {
 fn passes(row: &Row) -> String {
     let timing = &row.timing;
     let place = format!(
-        "{}, {} frames, wall {}",
+        "{}, {} frames, wall clock {}",
         timing.place.name(),
         timing.frames,
         milliseconds(&timing.wall)
