@@ -62,7 +62,7 @@ impl Comparison {
             reference: candidate(converged(visibility), None).setting,
             floor,
             limit: timings.limit,
-            exposure: automatic_exposure(&reference),
+            exposure: exposure(&reference),
             rows,
         };
         Ok(Self {
@@ -70,6 +70,25 @@ impl Comparison {
             reference,
             pictures,
         })
+    }
+}
+
+/// An exposure that burns out nothing but the brightest hundredth [EV]: differences in white can't be seen.
+fn exposure(picture: &Picture) -> f32 {
+    /// From here on the tone mapper compresses.
+    const KNEE: f32 = 0.8;
+    let mut peaks: Vec<f32> = picture
+        .pixels
+        .iter()
+        .map(|pixel| pixel.iter().copied().fold(0.0, f32::max))
+        .collect();
+    peaks.sort_unstable_by(f32::total_cmp);
+    let highlight = peaks[(peaks.len() - 1) * 99 / 100];
+    let automatic = automatic_exposure(picture);
+    if highlight > 0.0 && highlight.is_finite() {
+        automatic.min((KNEE / highlight).log2())
+    } else {
+        automatic
     }
 }
 
@@ -87,4 +106,24 @@ fn floor(
         stage.reference(Visibility::ShadowMap)
     })?;
     error_of(&picture, reference).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shafts_in_the_dark_are_not_white() {
+        let picture = |values: &[f32]| Picture {
+            size: [values.len() as u32, 1],
+            pixels: values.iter().map(|x| [*x, 0.5 * x, 0.0]).collect(),
+        };
+        let shafts: Vec<f32> = (0..100).map(|i| if i < 70 { 0.0 } else { 3.0 }).collect();
+        assert!((3.0 * exposure(&picture(&shafts)).exp2() - 0.8).abs() < 1e-5);
+        // What is even needs no such care.
+        let even = picture(&[0.2; 100]);
+        assert_eq!(exposure(&even), automatic_exposure(&even));
+        let black = picture(&[0.0; 4]);
+        assert_eq!(exposure(&black), 0.0);
+    }
 }

@@ -93,6 +93,7 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
         let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
+            .margin_right(40)
             .x_label_area_size(52)
             .y_label_area_size(84)
             .build_cartesian_2d(times.log_scale(), errors.log_scale())?;
@@ -153,10 +154,9 @@ pub fn legend(map: ErrorMap) -> Result<String, PlotError> {
     let width = (to - from) / colors.len() as f64;
     let swatch = |(index, [r, g, b]): (usize, [u8; 3])| {
         let left = from + index as f64 * width;
-        Rectangle::new(
-            [(left, 0.0), (left + width, 1.0)],
-            RGBColor(r, g, b).filled(),
-        )
+        // Two wide, under its neighbour: edges between pixels leave no seam.
+        let right = (left + 2.0 * width).min(to);
+        Rectangle::new([(left, 0.0), (right, 1.0)], RGBColor(r, g, b).filled())
     };
     let mut svg = String::new();
     {
