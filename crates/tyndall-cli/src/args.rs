@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
 
+use tyndall::techniques::Technique;
+
 use crate::{
     layer::Layer,
     shot::{Override, technique_names},
@@ -23,6 +25,7 @@ Examples:
   tyndall render builtin:church                     a built-in scene to church.png
   tyndall render model.glb -o model.png             frames the model, lights it, fills the air with haze
   tyndall render shot.toml -o shot.exr --layer final --layer inscatter
+  tyndall compare shot.toml -o report               error and time of each technique, with pictures
   tyndall info model.glb                            what a scene holds
 
 Exit codes: 0 done, 1 the input is wrong, 2 usage, 3 the device failed.";
@@ -90,18 +93,52 @@ Depth in a .exr is the distance along the view ray in metres. Paths in a shot an
 
 /// Arguments of `tyndall compare`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = COMPARE_EXAMPLES)]
 pub struct CompareArgs {
-    /// A shot (.toml)
+    /// A shot (.toml) or a scene (.gltf, .glb or builtin:NAME)
     pub shot: PathBuf,
-    /// The techniques; left out: all that can do the shot
-    #[arg(long, value_name = "A,B,..", value_delimiter = ',')]
+    /// The techniques; left out: all that can do the shot's lights
+    #[arg(long, value_name = "A,B,..", value_delimiter = ',', value_parser = PossibleValuesParser::new(compared_names()))]
     pub techniques: Vec<String>,
     /// Where the reference takes its visibility from
-    #[arg(long, value_name = "V", value_parser = ["traced", "shadow-map"])]
-    pub reference: Option<String>,
-    /// Folder of the report
+    #[arg(long, value_name = "V", default_value = "traced")]
+    pub reference: ReferenceChoice,
+    /// Folder of the report, made where it is missing; left out: the shot's name with -compare, in this folder
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// Write the numbers as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Override a key of the shot by its dotted path; the value is TOML or a bare word
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub overrides: Vec<Override>,
+    /// Where techniques run that can run on both; the reference runs on the CPU
+    #[arg(long, value_name = "B", default_value = "auto")]
+    pub backend: BackendChoice,
+}
+
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  tyndall compare shot.toml                         all techniques, to shot-compare/report.html
+  tyndall compare shot.toml --techniques ray-march --reference shadow-map -o out --json out.json
+
+Each technique is measured at several settings, the shot's own among them: errors against the reference, times of frames
+in turn. report.html opens from disk and needs no network; pictures lie beside it as .png and linear .exr.";
+
+/// Techniques that can be compared with the reference: all others.
+fn compared_names() -> Vec<&'static str> {
+    let mut names = technique_names();
+    names.retain(|name| !matches!(Technique::from_name(name), Some(Technique::Reference(_))));
+    names
+}
+
+/// Where the reference takes its visibility from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ReferenceChoice {
+    /// The scene's triangles
+    Traced,
+    /// The shadow map's texels, which leaves out the map's own error
+    ShadowMap,
 }
 
 /// Arguments of `tyndall bench`.

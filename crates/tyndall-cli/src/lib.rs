@@ -3,6 +3,7 @@
 
 pub mod args;
 pub mod commands;
+pub mod compare;
 pub mod failure;
 pub mod layer;
 pub mod light_texture;

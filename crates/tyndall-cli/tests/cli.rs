@@ -152,6 +152,24 @@ fn wrong_files_exit_1_and_write_nothing() {
             &["no/such", "does not exist"],
         ),
         (&["info", "cut.glb"], &["cut.glb"]),
+        (&["compare", "cut.glb"], &["cut.glb"]),
+        (
+            &["compare", "builtin:empty", "--json", "no/such/a.json"],
+            &["no/such", "does not exist"],
+        ),
+        (
+            &[
+                "compare",
+                "builtin:empty",
+                "-o",
+                "cut.glb",
+                "--backend",
+                "cpu",
+                "--set",
+                "size=[4,3]",
+            ],
+            &["cannot make the folder cut.glb"],
+        ),
     ] {
         assert_fails(&tyndall(folder.path(), arguments), 1, words);
         assert_eq!(files(folder.path()), ["cut.glb"], "{arguments:?}");
@@ -210,7 +228,18 @@ fn wrong_usage_exits_2_and_writes_nothing() {
             &["render", "shot.toml", "--frames", "0..9", "-o", "f####.png"],
             &["--frames", "not there yet"],
         ),
-        (&["compare", "shot.toml"], &["compare", "not there yet"]),
+        (
+            &["compare", "shot.toml", "--techniques", "ray-march,magic"],
+            &["magic", "ray-march"],
+        ),
+        (
+            &["compare", "shot.toml", "--techniques", "reference"],
+            &["reference", "ray-march"],
+        ),
+        (
+            &["compare", "shot.toml", "--reference", "guess"],
+            &["guess", "shadow-map"],
+        ),
         (&["bench"], &["bench", "not there yet"]),
         (&["view", "shot.toml"], &["view", "not there yet"]),
     ] {
@@ -305,6 +334,50 @@ fn a_png_is_called_after_the_shot_and_stats_say_what_it_took() {
             .iter()
             .any(|stage| stage["name"] == "in-scatter by ray-march")
     );
+}
+
+#[test]
+fn compare_writes_a_page_pictures_and_numbers() {
+    let folder = folder_with("shot.toml", SHOT);
+    let arguments = [
+        "compare",
+        "shot.toml",
+        "--backend",
+        "cpu",
+        "--techniques",
+        "ray-march",
+        "--json",
+        "numbers.json",
+        "--set",
+        "technique.steps=48",
+    ];
+    let output = tyndall(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let made = folder.path().join("shot-compare");
+    let page = std::fs::read_to_string(made.join("report.html")).unwrap();
+    assert!(page.contains("ray-march steps 48"));
+    let numbers = std::fs::read(folder.path().join("numbers.json")).unwrap();
+    let numbers: serde_json::Value = serde_json::from_slice(&numbers).unwrap();
+    assert_eq!(numbers["shot"], "shot");
+    assert_eq!(numbers["adapter"], serde_json::Value::Null);
+    assert_eq!(numbers["reference"]["parameters"]["visibility"], "traced");
+    let rows = numbers["rows"].as_array().unwrap();
+    let labels: Vec<_> = rows
+        .iter()
+        .map(|row| row["label"].as_str().unwrap())
+        .collect();
+    let steps = [32, 48, 64, 128, 256, 512, 1024];
+    assert_eq!(labels, steps.map(|n| format!("ray-march steps {n}")));
+    // Without anything that blocks, marching errs by its quadrature alone.
+    let errors: Vec<f64> = rows
+        .iter()
+        .map(|row| row["errors"]["rel_mae"].as_f64().unwrap())
+        .collect();
+    assert!(errors[0] > errors[3] && errors[0] < 1e-3, "{errors:?}");
+    let reference = Picture::read_exr(&made.join("reference.exr")).unwrap();
+    let marched = Picture::read_exr(&made.join("ray-march-steps-32.exr")).unwrap();
+    let error = compare(&marched, &reference).unwrap();
+    assert!((error.rel_mae - errors[0]).abs() <= 1e-12, "{error:?}");
 }
 
 /// Hides Vulkan's drivers, which is all there is on Linux.

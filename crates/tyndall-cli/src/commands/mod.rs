@@ -1,5 +1,6 @@
 //! The commands, one a file.
 
+mod compare;
 mod info;
 mod render;
 
@@ -16,7 +17,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Info(args) => info::run(&args),
-        Command::Compare(_) => Err(Failure::not_there_yet("compare")),
+        Command::Compare(args) => compare::run(&args),
         Command::Bench(_) => Err(Failure::not_there_yet("bench")),
         Command::View(_) => Err(Failure::not_there_yet("view")),
     }
