@@ -17,7 +17,7 @@ mod tests;
 
 pub use equal::{EqualQuality, EqualTime, MAX_STEPS, equal_quality, equal_time, ray_march};
 pub use error::error_of;
-pub use stage::{Place, Stage};
+pub use stage::{Place, Stage, converged};
 pub use timing::{Budget, Spread, Timing, Timings};
 pub use tyndall::techniques::reference::Visibility;
 pub use tyndall_testkit::metrics::PictureError;

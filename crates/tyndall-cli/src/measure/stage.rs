@@ -132,10 +132,7 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// [`Failure`], as for [`Stage::in_scatter`].
     pub fn reference(&self, visibility: Visibility) -> Result<Picture, Failure> {
-        self.in_scatter(&Technique::Reference(reference::Params {
-            tolerance: REFERENCE_TOLERANCE,
-            visibility,
-        }))
+        self.in_scatter(&converged(visibility))
     }
 
     /// Times techniques in turn: one frame of each, and one of the limit, a round.
@@ -225,6 +222,14 @@ impl<'a> Stage<'a> {
             },
         }
     }
+}
+
+/// The reference at a tolerance below the error of anything it is compared with.
+pub fn converged(visibility: Visibility) -> Technique {
+    Technique::Reference(reference::Params {
+        tolerance: REFERENCE_TOLERANCE,
+        visibility,
+    })
 }
 
 /// What gets frames in turn.
