@@ -5,7 +5,7 @@ use anyhow::{Context, bail, ensure};
 use std::process::Command;
 
 /// Turns off a Vulkan layer of Mesa's that looks for a Wayland display and, where there is none, prints an error that is none.
-const NO_DEVICE_SELECT: (&str, &str) = ("NODEVICE_SELECT", "1");
+pub(crate) const NO_DEVICE_SELECT: (&str, &str) = ("NODEVICE_SELECT", "1");
 
 pub(crate) fn fmt() -> anyhow::Result<()> {
     ensure_component("fmt", "rustfmt")?;

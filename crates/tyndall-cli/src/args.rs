@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
 use tyndall::techniques::Technique;
 
 use crate::{
+    bench::suite_names,
     layer::Layer,
     shot::{Override, technique_names},
 };
@@ -143,13 +144,24 @@ pub enum ReferenceChoice {
 
 /// Arguments of `tyndall bench`.
 #[derive(Clone, Debug, Args)]
+#[command(after_help = BENCH_HELP)]
 pub struct BenchArgs {
-    /// The table to measure; left out: all
+    /// The tables to measure; left out: all
+    #[arg(value_parser = PossibleValuesParser::new(suite_names()))]
     pub suite: Option<String>,
     /// Write the numbers as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Folder of the papers' scenes; left out: `shared/assets` of a folder above this one or above the program
+    #[arg(long, value_name = "DIR")]
+    pub assets: Option<PathBuf>,
 }
+
+const BENCH_HELP: &str = "\
+Tables go to standard output, progress to standard error. Times are the device's timestamps, summed over a frame's passes
+(on the CPU: wall-clock time): median [lower quartile, upper quartile] of at least 10 frames, fewer where a frame takes
+seconds. Frames of all techniques of a table take turns. `x limit` is the time over that of a pass that reads depth buffer
+and shadow map once and writes the output once. Scenes that are missing are stood in for by built-in ones, which is said.";
 
 /// Arguments of `tyndall view`.
 #[derive(Clone, Debug, Args)]

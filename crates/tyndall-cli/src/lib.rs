@@ -2,6 +2,7 @@
 //! and written ([`output`]) as they are or as a picture for people ([`picture`]).
 
 pub mod args;
+mod bench;
 pub mod commands;
 pub mod compare;
 pub mod failure;

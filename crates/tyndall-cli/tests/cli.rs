@@ -240,7 +240,7 @@ fn wrong_usage_exits_2_and_writes_nothing() {
             &["compare", "shot.toml", "--reference", "guess"],
             &["guess", "shadow-map"],
         ),
-        (&["bench"], &["bench", "not there yet"]),
+        (&["bench", "magic"], &["magic", "chen", "scaling"]),
         (&["view", "shot.toml"], &["view", "not there yet"]),
     ] {
         assert_fails(&tyndall(folder.path(), arguments), 2, words);

@@ -6,6 +6,7 @@ mod render;
 
 use crate::{
     args::{Cli, Command},
+    bench,
     failure::Failure,
 };
 
@@ -18,7 +19,7 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Command::Render(args) => render::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
-        Command::Bench(_) => Err(Failure::not_there_yet("bench")),
+        Command::Bench(args) => bench::run(&args),
         Command::View(_) => Err(Failure::not_there_yet("view")),
     }
 }

@@ -15,7 +15,10 @@ mod timing;
 #[cfg(test)]
 mod tests;
 
-pub use equal::{EqualQuality, EqualTime, MAX_STEPS, equal_quality, equal_time, ray_march};
+pub use equal::{
+    EqualQuality, EqualTime, MAX_STEPS, equal_quality, equal_time, error_at, ray_march,
+    steps_in_time, timed_marches,
+};
 pub use error::error_of;
 pub use stage::{Place, Stage, converged};
 pub use timing::{Budget, Spread, Timing, Timings};

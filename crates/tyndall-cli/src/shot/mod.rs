@@ -135,11 +135,31 @@ impl Shot {
         technique: Option<&str>,
         overrides: &[Override],
     ) -> Result<Self, ShotError> {
-        let mut root = if file.extension() == Some(OsStr::new("toml")) {
-            read_file(file)?
+        let root = if file.extension() == Some(OsStr::new("toml")) {
+            let source = std::fs::read_to_string(file).map_err(|cause| {
+                error_in(file, Origin::File, Problem::Unreadable(cause.to_string()))
+            })?;
+            parse(file, &source)?
         } else {
             of_scene(file)
         };
+        Self::of_tree(file, root, technique, overrides)
+    }
+
+    /// Reads the text of a shot file. `file` is what errors name and what its paths are relative to; it need not exist.
+    ///
+    /// # Errors
+    /// [`ShotError`], as for [`Shot::load`].
+    pub fn of_text(file: &Path, text: &str, overrides: &[Override]) -> Result<Self, ShotError> {
+        Self::of_tree(file, parse(file, text)?, None, overrides)
+    }
+
+    fn of_tree(
+        file: &Path,
+        mut root: Table,
+        technique: Option<&str>,
+        overrides: &[Override],
+    ) -> Result<Self, ShotError> {
         let in_file = |key: &str| root.contains_key(key);
         let (camera_in_file, lights_in_file, medium_in_file) =
             (in_file("camera"), in_file("light"), in_file("medium"));
@@ -237,21 +257,20 @@ fn folder(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
 }
 
-fn read_file(file: &Path) -> Result<Table, ShotError> {
-    let error = |origin, problem| {
-        let location = Location {
-            file: file.to_owned(),
-            origin,
-            path: String::new(),
-        };
-        ShotError::new(location, problem)
-    };
-    let source = std::fs::read_to_string(file)
-        .map_err(|cause| error(Origin::File, Problem::Unreadable(cause.to_string())))?;
-    tree::parse(&source).map_err(|(line, cause)| {
+fn parse(file: &Path, source: &str) -> Result<Table, ShotError> {
+    tree::parse(source).map_err(|(line, cause)| {
         let message = cause.message().trim().replace('\n', ", ");
-        error(Origin::Line(line), Problem::Syntax(message))
+        error_in(file, Origin::Line(line), Problem::Syntax(message))
     })
+}
+
+fn error_in(file: &Path, origin: Origin, problem: Problem) -> ShotError {
+    let location = Location {
+        file: file.to_owned(),
+        origin,
+        path: String::new(),
+    };
+    ShotError::new(location, problem)
 }
 
 /// A shot of a scene file: its path, relative to its own folder, and a size.

@@ -1,0 +1,291 @@
+//! What the papers rendered: their scenes where those are at hand, else a built-in scene of the same kind.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use tyndall::{
+    cpu::LightTexture,
+    frame::{Emitter, TexturePlacement},
+};
+use tyndall_scene::{geometry::Bounds, shadow_fit};
+
+use crate::{
+    failure::Failure,
+    light_texture,
+    progress::Stages,
+    setup::Setup,
+    shot::{Override, Shot},
+};
+
+/// A scene of a paper.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Subject {
+    /// What the paper calls it.
+    pub(super) name: &'static str,
+    /// Its file among the assets, and how it is seen and lit.
+    asset: Option<Asset>,
+    /// What is rendered in its place where the file is missing.
+    stand_in: &'static str,
+    /// Whether its light shines through a picture.
+    picture: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Asset {
+    file: &'static str,
+    shot: &'static str,
+}
+
+macro_rules! asset {
+    ($file:literal, $shot:literal) => {
+        Some(Asset {
+            file: $file,
+            shot: include_str!(concat!("shots/", $shot, ".toml")),
+        })
+    };
+}
+
+const fn subject(name: &'static str, asset: Option<Asset>, stand_in: &'static str) -> Subject {
+    Subject {
+        name,
+        asset,
+        stand_in,
+        picture: false,
+    }
+}
+
+pub(super) const SIBENIK: Subject = subject(
+    "SIBENIK",
+    asset!("sibenik.glb", "sibenik"),
+    "builtin:church",
+);
+pub(super) const SIBENIKTEX: Subject = Subject {
+    name: "SIBENIKTEX",
+    picture: true,
+    ..SIBENIK
+};
+pub(super) const TREES: Subject = subject("TREES", None, "builtin:forest");
+pub(super) const TERRAIN: Subject = subject(
+    "TERRAIN",
+    asset!("terrain.glb", "terrain"),
+    "builtin:terrain",
+);
+pub(super) const DRAGON: Subject =
+    subject("dragon", asset!("dragon.glb", "dragon"), "builtin:slats");
+pub(super) const BUNNY: Subject = subject("bunny", asset!("bunny.glb", "bunny"), "builtin:slats");
+pub(super) const BUDDHA: Subject =
+    subject("buddha", asset!("buddha.glb", "buddha"), "builtin:slats");
+pub(super) const DONUTS: Subject = subject(
+    "donuts & dragon",
+    asset!("donuts-dragon.glb", "donuts-dragon"),
+    "builtin:slats",
+);
+pub(super) const BIG_SCENE: Subject = subject("bigScene", None, "builtin:forest");
+pub(super) const YEAH_RIGHT: Subject = subject("yeahRight", None, "builtin:church");
+pub(super) const DONUTS_RECT: Subject = subject(
+    "donuts, area light",
+    asset!("donuts-dragon.glb", "donuts-rect"),
+    "builtin:slats",
+);
+
+/// The picture that SIBENIKTEX's light shines through, among the assets.
+const PICTURE: &str = "rose-window.png";
+
+impl Subject {
+    /// Loads it, and says what was loaded. `map` is the side of the shadow map [texels].
+    pub(super) fn load(
+        &self,
+        assets: Option<&Path>,
+        size: [u32; 2],
+        map: u32,
+        stages: &mut Stages,
+    ) -> Result<(Setup, String), Failure> {
+        let [width, height] = size;
+        let overrides = [
+            format!("size=[{width},{height}]"),
+            format!("light.0.shadow_map={map}"),
+        ];
+        let overrides = overrides
+            .iter()
+            .map(|text| text.parse())
+            .collect::<Result<Vec<Override>, _>>()
+            .map_err(Failure::input)?;
+        let (shot, mut what) = match self.asset_in(assets) {
+            Some((folder, asset)) => {
+                let file = folder.join(format!("{}.toml", self.name));
+                (
+                    Shot::of_text(&file, asset.shot, &overrides),
+                    asset.file.to_owned(),
+                )
+            }
+            None => {
+                let shot = Shot::load(Path::new(self.stand_in), None, &overrides);
+                (shot, format!("{} in its place", self.stand_in))
+            }
+        };
+        let mut setup = Setup::new(&shot.map_err(Failure::input)?, stages)?;
+        if self.picture {
+            let file = assets
+                .map(|folder| folder.join(PICTURE))
+                .filter(|file| file.is_file());
+            what += if file.is_some() {
+                ", light through a rose window"
+            } else {
+                ", light through coloured rings"
+            };
+            setup = with_picture(&setup, load_picture(file)?);
+        }
+        Ok((setup, what))
+    }
+
+    fn asset_in<'a>(&self, assets: Option<&'a Path>) -> Option<(&'a Path, Asset)> {
+        let (folder, asset) = (assets?, self.asset?);
+        folder.join(asset.file).is_file().then_some((folder, asset))
+    }
+}
+
+/// Where the scenes are that can't be part of the repository: `shared/assets` of a folder above the current one or
+/// above this program.
+pub(super) fn find_assets() -> Option<PathBuf> {
+    let starts = [std::env::current_dir(), std::env::current_exe()];
+    let starts: Vec<PathBuf> = starts.into_iter().flatten().collect();
+    starts
+        .iter()
+        .flat_map(|start| start.ancestors())
+        .map(|folder| folder.join("shared/assets"))
+        .find(|folder| folder.is_dir())
+}
+
+fn load_picture(file: Option<PathBuf>) -> Result<LightTexture, Failure> {
+    file.map_or_else(
+        || Ok(coloured_rings()),
+        |file| light_texture::load(&file).map_err(Failure::input),
+    )
+}
+
+/// Rings of saturated colours.
+fn coloured_rings() -> LightTexture {
+    const SIDE: u32 = 256;
+    const RINGS: f32 = 6.0;
+    const COLOURS: [[f32; 3]; 4] = [
+        [0.9, 0.1, 0.1],
+        [0.1, 0.2, 0.9],
+        [0.9, 0.7, 0.1],
+        [0.1, 0.7, 0.2],
+    ];
+    let texel = |index: u32| {
+        let place = glam::vec2((index % SIDE) as f32 + 0.5, (index / SIDE) as f32 + 0.5);
+        let radius = (place * (2.0 / SIDE as f32) - 1.0).length();
+        COLOURS[(radius * RINGS) as usize % COLOURS.len()]
+    };
+    LightTexture {
+        size: [SIDE; 2],
+        texels: (0..SIDE * SIDE).map(texel).collect(),
+    }
+}
+
+/// The scene's middle and the radius of the sphere round it [m].
+fn sphere(setup: &Setup) -> (Vec3, f32) {
+    let bounds = setup.tracer.geometry().bounds();
+    let bounds = bounds.unwrap_or(Bounds {
+        min: Vec3::NEG_ONE,
+        max: Vec3::ONE,
+    });
+    (bounds.center(), 0.5 * bounds.extent().length())
+}
+
+/// The sun through a picture that covers the whole scene.
+fn with_picture(setup: &Setup, picture: LightTexture) -> Setup {
+    let mut setup = setup.clone();
+    let (center, radius) = sphere(&setup);
+    if let (Some(light), Some(extra)) = (setup.frame.lights.first_mut(), setup.lights.first_mut())
+        && let Emitter::Directional { direction, .. } = light.emitter
+    {
+        let (x, y) = Vec3::from(direction).normalize().any_orthonormal_pair();
+        light.texture = Some(TexturePlacement::Parallelogram {
+            center: center.to_array(),
+            edge_x: (2.0 * radius * x).to_array(),
+            edge_y: (2.0 * radius * y).to_array(),
+        });
+        extra.texture = Some(picture);
+    }
+    setup
+}
+
+/// The sun replaced by a spot light, far away in the same direction, whose cone holds the whole scene.
+pub(super) fn with_far_spot(setup: &Setup) -> Setup {
+    /// Distance in radii of the scene.
+    const DISTANCE: f32 = 4.0;
+    let mut setup = setup.clone();
+    let (center, radius) = sphere(&setup);
+    let distance = DISTANCE * radius;
+    let outer = (1.0 / DISTANCE).asin();
+    if let Some(light) = setup.frame.lights.first_mut()
+        && let Emitter::Directional {
+            direction,
+            illuminance,
+        } = light.emitter
+    {
+        light.emitter = Emitter::Spot {
+            position: (center - distance * Vec3::from(direction).normalize()).to_array(),
+            direction,
+            intensity: illuminance.map(|x| x * distance * distance),
+            inner: 0.9 * outer,
+            outer,
+        };
+        light.shadow = shadow_fit::fit(setup.tracer.geometry(), &light.emitter);
+        light.texture = None;
+    }
+    setup
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Subject; 11] = [
+        SIBENIK,
+        SIBENIKTEX,
+        TREES,
+        TERRAIN,
+        DRAGON,
+        BUNNY,
+        BUDDHA,
+        DONUTS,
+        BIG_SCENE,
+        YEAH_RIGHT,
+        DONUTS_RECT,
+    ];
+
+    #[test]
+    fn every_shot_is_read_and_takes_its_size_and_map() {
+        let overrides = ["size=[64,48]", "light.0.shadow_map=64"].map(|text| text.parse().unwrap());
+        for subject in ALL {
+            let Some(asset) = subject.asset else { continue };
+            let shot = Shot::of_text(Path::new("bench.toml"), asset.shot, &overrides);
+            let shot = shot.unwrap_or_else(|error| panic!("{}: {error}", subject.name));
+            assert_eq!(shot.size, [64, 48]);
+            assert_eq!(shot.lights.unwrap()[0].shadow_map, 64);
+            assert!(shot.scene.to_string().ends_with(asset.file));
+        }
+    }
+
+    #[test]
+    fn without_assets_a_built_in_scene_stands_in_and_is_named() {
+        let (setup, what) = Subject {
+            stand_in: "builtin:slats",
+            ..SIBENIKTEX
+        }
+        .load(None, [32, 24], 64, &mut Stages::default())
+        .unwrap();
+        assert_eq!(
+            what,
+            "builtin:slats in its place, light through coloured rings"
+        );
+        assert_eq!((setup.size, setup.lights[0].map_size), ([32, 24], [64, 64]));
+        assert!(setup.lights[0].texture.is_some() && setup.frame.lights[0].texture.is_some());
+        let spot = with_far_spot(&setup);
+        assert!(matches!(spot.frame.lights[0].emitter, Emitter::Spot { .. }));
+        assert!(spot.frame.lights[0].shadow.is_some());
+    }
+}

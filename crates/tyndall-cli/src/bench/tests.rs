@@ -1,0 +1,93 @@
+//! Whole suites on tiny pictures.
+
+use super::*;
+
+const TINY: Paper = Paper {
+    techniques: &["min-max", "sleight-of-hand"],
+    scenes: &[subject::DRAGON],
+    size: [64, 48],
+    map: 128,
+    spot_maps: &[64, 128],
+};
+
+fn bench(backend: Backend) -> Bench {
+    Bench {
+        backend,
+        assets: None,
+    }
+}
+
+/// The only row of a technique, by column.
+fn row<'a>(table: &'a Value, technique: &str) -> &'a Value {
+    let rows = table["rows"].as_array().unwrap();
+    let mut of_name = rows.iter().filter(|row| row["technique"] == technique);
+    let row = of_name.next().unwrap();
+    assert!(of_name.next().is_none(), "{table:#}");
+    row
+}
+
+#[test]
+fn a_paper_gets_its_tables_and_what_is_missing_is_named() {
+    let choice = BackendChoice::Auto;
+    let bench = bench(Backend::choose(choice, Technique::default().info()).unwrap());
+    let report = paper::run(&TINY, &bench, &mut Stages::default()).unwrap();
+    assert_eq!(report.missing, ["sleight-of-hand"]);
+    let json: Vec<Value> = report.tables.iter().map(Table::to_json).collect();
+    let [quality, _passes, maps] = &json[..] else {
+        panic!("expected three tables, found {json:#?}");
+    };
+    assert_eq!(quality["title"], "dragon (builtin:slats in its place)");
+    let own = row(quality, "min-max");
+    assert!(own["ms"]["median"].as_f64().unwrap() > 0.0, "{own:#}");
+    // Measured: 0.031, of 16 x 12 pixels (2026-11-22).
+    assert!(own["relMAE"].as_f64().unwrap() < 0.05, "{own:#}");
+    assert!(!own["equal-quality steps"].is_null(), "{own:#}");
+    assert!(own["speed-up"].is_string(), "{own:#}");
+    assert!(own["equal-time steps"].as_u64().unwrap() >= 1, "{own:#}");
+    let sides: Vec<_> = maps["rows"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|r| r["map side"].as_u64())
+        .collect();
+    assert_eq!(sides, [Some(64), Some(128)]);
+}
+
+#[test]
+fn brute_force_stands_alone_where_a_papers_techniques_are_missing() {
+    let paper = Paper {
+        techniques: &["sleight-of-hand"],
+        spot_maps: &[],
+        ..TINY
+    };
+    let report = paper::run(&paper, &bench(Backend::Cpu), &mut Stages::default()).unwrap();
+    let quality = report.tables[0].to_json();
+    let march = row(&quality, "ray-march");
+    assert_eq!(march["on"], "CPU");
+    assert!(
+        march["x limit"].is_null() && march["speed-up"].is_null(),
+        "{march:#}"
+    );
+}
+
+#[test]
+fn a_report_says_what_it_is_and_what_is_missing() {
+    let suite = &SUITES[0];
+    let report = Report {
+        tables: Vec::new(),
+        missing: vec!["a", "b"],
+    };
+    let text = report.to_text(suite, Duration::from_secs(7));
+    assert!(text.starts_with("\n== chen: "), "{text}");
+    assert!(
+        text.contains("\nmissing: a, b\n") && text.ends_with("measured in 7 s\n"),
+        "{text}"
+    );
+    assert_eq!(report.to_json(suite)["missing"], json!(["a", "b"]));
+    let header = header(&bench(Backend::Cpu));
+    assert!(
+        header
+            .iter()
+            .any(|line| line == &("adapter", "none: the CPU".to_owned()))
+    );
+}
