@@ -7,6 +7,7 @@
 pub mod walk;
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+use rayon::prelude::*;
 
 use crate::{
     cpu::{CpuLightInputs, GlassMap, ShadowMap},
@@ -99,6 +100,55 @@ pub struct Shadows<'a> {
     reversed: bool,
     map: &'a ShadowMap,
     glass: Option<&'a GlassMap>,
+    panes: Panes,
+}
+
+/// Which blocks of a glass map hold any tint: most of a map holds none, and a walk may pass over it block by block.
+#[derive(Clone, Debug, Default)]
+struct Panes {
+    /// Blocks a face.
+    size: [u32; 2],
+    /// Face by face, row by row.
+    tinted: Vec<bool>,
+}
+
+impl Panes {
+    /// Texels a side of a block.
+    const BLOCK: u32 = 32;
+
+    fn new(glass: &GlassMap) -> Self {
+        // Blocks must end where texels do.
+        let block = if glass.size.iter().all(|n| n % Self::BLOCK == 0) {
+            Self::BLOCK
+        } else {
+            1
+        };
+        let size = glass.size.map(|n| n / block);
+        let plane = glass.size[0] as usize * glass.size[1] as usize;
+        let row = |(i, tinted): (usize, &mut [bool])| {
+            let (face, y) = (i / size[1] as usize, i % size[1] as usize);
+            let layers = glass.layers as usize;
+            for layer in face * layers..(face + 1) * layers {
+                let first = layer * plane + y * block as usize * glass.size[0] as usize;
+                let rows = &glass.texels[first..first + (block * glass.size[0]) as usize];
+                for (x, texel) in rows.iter().enumerate() {
+                    let column = x % glass.size[0] as usize / block as usize;
+                    tinted[column] |= texel[..3] != [1.0; 3];
+                }
+            }
+        };
+        let faces = glass.texels.len() / (plane * glass.layers.max(1) as usize);
+        let mut tinted = vec![false; faces * size[0] as usize * size[1] as usize];
+        tinted
+            .par_chunks_mut(size[0] as usize)
+            .enumerate()
+            .for_each(row);
+        Self { size, tinted }
+    }
+
+    fn is_tinted(&self, face: usize, block: usize) -> bool {
+        self.tinted[face * self.size[0] as usize * self.size[1] as usize + block]
+    }
 }
 
 impl<'a> Shadows<'a> {
@@ -121,6 +171,7 @@ impl<'a> Shadows<'a> {
             reversed: reversed_depth,
             map: inputs.shadow_map?,
             glass: inputs.glass,
+            panes: inputs.glass.map(Panes::new).unwrap_or_default(),
         })
     }
 

@@ -112,17 +112,22 @@ impl Shadows<'_> {
 
     fn walk_glass(&self, face: usize, ray: &ClipRay, span: [f64; 2], shades: &mut Vec<Shade>) {
         let Some(glass) = self.glass else { return };
-        for_each_texel(ray, span, glass.size, |texel, [from, to]| {
-            for layer in 0..glass.layers {
-                let (depth, tint) = self.glass_layer(glass, face, layer, texel);
-                if let Some([start, end]) = behind(ray, depth, [from, to]) {
-                    shades.push(Shade {
-                        start,
-                        end,
-                        tint: tint.to_array(),
-                    });
-                }
+        for_each_texel(ray, span, self.panes.size, |block, span| {
+            if !self.panes.is_tinted(face, block) {
+                return;
             }
+            for_each_texel(ray, span, glass.size, |texel, [from, to]| {
+                for layer in 0..glass.layers {
+                    let (depth, tint) = self.glass_layer(glass, face, layer, texel);
+                    if let Some([start, end]) = behind(ray, depth, [from, to]) {
+                        shades.push(Shade {
+                            start,
+                            end,
+                            tint: tint.to_array(),
+                        });
+                    }
+                }
+            });
         });
     }
 }
