@@ -13,6 +13,7 @@ use tyndall::{
 };
 use tyndall_testkit::picture::Picture;
 
+#[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 
 /// Width and height of the pictures [pixels].
