@@ -119,7 +119,7 @@ impl Camera {
 pub struct Light {
     /// What shines.
     pub emitter: Emitter,
-    /// How the light's shadow map was made; `None`: nothing blocks this light.
+    /// How the light's shadow map was made; `None`: nothing blocks this light, unless visibility is traced.
     pub shadow: Option<ShadowProjection>,
     /// Where the light's texture lies; `None`: white light.
     pub texture: Option<TexturePlacement>,
