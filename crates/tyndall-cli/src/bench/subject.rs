@@ -235,6 +235,7 @@ pub(super) fn with_far_spot(setup: &Setup) -> Setup {
         };
         light.shadow = shadow_fit::fit(setup.tracer.geometry(), &light.emitter);
         light.texture = None;
+        setup.lights[0].texture = None;
     }
     setup
 }
@@ -285,6 +286,7 @@ mod tests {
         assert_eq!((setup.size, setup.lights[0].map_size), ([32, 24], [64, 64]));
         assert!(setup.lights[0].texture.is_some() && setup.frame.lights[0].texture.is_some());
         let spot = with_far_spot(&setup);
+        assert!(spot.lights[0].texture.is_none() && spot.frame.lights[0].texture.is_none());
         assert!(matches!(spot.frame.lights[0].emitter, Emitter::Spot { .. }));
         assert!(spot.frame.lights[0].shadow.is_some());
     }
