@@ -1,7 +1,5 @@
 //! The effect in somebody's renderer: created once a device, prepared and recorded once a frame.
 
-use std::sync::Arc;
-
 use crate::{
     camera::CameraRays,
     composite::Composite,
@@ -9,11 +7,12 @@ use crate::{
     frame::{Emitter, Frame, Light},
     gpu::{
         PassTimer,
-        layout::{self, Absent},
-        pipeline::LightPipelines,
+        pass::Pass,
+        pool::Pool,
+        scope::{LightScope, Shared},
         uniforms::{FrameUniform, LightUniform},
     },
-    techniques::{Backends, Technique, ray_march},
+    techniques::{Backends, Programs},
     validate,
 };
 
@@ -87,34 +86,18 @@ pub struct LightInputs<'a> {
 
 /// The effect's pipelines. Immutable, one a device.
 pub struct Effect {
-    output: OutputPrecision,
-    frame_layout: wgpu::BindGroupLayout,
-    light_layout: wgpu::BindGroupLayout,
-    absent: Absent,
-    sampler: wgpu::Sampler,
-    ray_march: LightPipelines,
+    shared: Shared,
+    programs: Programs,
     composite: Composite,
 }
 
 /// What one camera needs: textures of its size, buffers, and the frame that was prepared last.
 pub struct EffectView {
     size: [u32; 2],
-    format: wgpu::TextureFormat,
-    frame_uniform: wgpu::Buffer,
-    params_uniform: wgpu::Buffer,
-    light_uniforms: Vec<wgpu::Buffer>,
-    /// The sum of the lights goes to and fro between two pictures; the second is made with the second light.
-    sums: Vec<wgpu::TextureView>,
-    prepared: Vec<LightPass>,
+    pool: Pool,
+    passes: Vec<Pass>,
+    output: wgpu::TextureView,
     composite: Option<wgpu::BindGroup>,
-}
-
-/// One light, ready to be recorded.
-struct LightPass {
-    name: String,
-    pipeline: Arc<wgpu::RenderPipeline>,
-    groups: [wgpu::BindGroup; 3],
-    target: usize,
 }
 
 impl Effect {
@@ -132,22 +115,11 @@ impl Effect {
         {
             return Err(CreateError::NotBlendable { format });
         }
-        let frame_layout = layout::frame(device);
-        let light_layout = layout::light(device);
-        let output = options.output.format();
+        let shared = Shared::new(device, options.output.format());
         Ok(Self {
-            output: options.output,
-            ray_march: ray_march::gpu::pipelines(device, &frame_layout, &light_layout, output),
-            composite: Composite::new(device, &frame_layout, format),
-            frame_layout,
-            light_layout,
-            absent: Absent::new(device),
-            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("tyndall light texture"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            }),
+            programs: Programs::default(),
+            composite: Composite::new(device, &shared.frame_layout, format),
+            shared,
         })
     }
 
@@ -164,18 +136,13 @@ impl Effect {
         if size.iter().any(|n| !(1..=limit).contains(n)) {
             return Err(CreateError::Size { size, limit });
         }
-        let format = self.output.format();
+        let mut pool = Pool::default();
+        let output = self.sum(device, &mut pool, size, 0);
         Ok(EffectView {
             size,
-            format,
-            frame_uniform: uniform_buffer::<FrameUniform>(device, "tyndall frame"),
-            params_uniform: uniform_buffer::<ray_march::gpu::ParamsUniform>(
-                device,
-                "tyndall params",
-            ),
-            light_uniforms: Vec::new(),
-            sums: vec![sum_texture(device, size, format)],
-            prepared: Vec::new(),
+            pool,
+            passes: Vec::new(),
+            output,
             composite: None,
         })
     }
@@ -196,53 +163,57 @@ impl Effect {
         validate::frame(frame)?;
         validate::technique(frame, Backends::Gpu)?;
         validate::gpu_inputs(frame, inputs, view.size)?;
-        let Technique::RayMarch(params) = &frame.technique else {
-            return Err(PrepareError::Unsupported {
-                technique: frame.technique.info().name,
-                what: "its work on the GPU".into(),
-            });
-        };
-        let rays = CameraRays::new(&frame.camera, view.size);
-        let uniform = FrameUniform::new(frame, &rays, view.size);
-        queue.write_buffer(&view.frame_uniform, 0, bytemuck::bytes_of(&uniform));
-        let params = ray_march::gpu::ParamsUniform::new(params);
-        queue.write_buffer(&view.params_uniform, 0, bytemuck::bytes_of(&params));
-
         // With no light at all, a black one still writes the transmittance.
         let black = (BLACK, LightInputs::default());
         let lights: Vec<(Light, LightInputs<'_>)> = if frame.lights.is_empty() {
             vec![black]
         } else {
-            frame
-                .lights
-                .iter()
-                .copied()
-                .zip(inputs.lights.iter().copied())
-                .collect()
+            let inputs = inputs.lights.iter().copied();
+            frame.lights.iter().copied().zip(inputs).collect()
         };
-        view.grow(device, lights.len());
-        let mut passes = Vec::with_capacity(lights.len());
+        for (i, (light, light_inputs)) in lights.iter().enumerate() {
+            frame
+                .technique
+                .check_gpu(&device.limits(), view.size, i, light, light_inputs)?;
+        }
+
+        let rays = CameraRays::new(&frame.camera, view.size);
+        let uniform = FrameUniform::new(frame, &rays, view.size);
+        view.pool.begin();
+        let frame_uniform = view.pool.uniform(device, queue, (None, "frame"), &uniform);
+        let mut passes = Vec::new();
+        let mut before = self.shared.absent.light.clone();
         for (i, (light, light_inputs)) in lights.iter().enumerate() {
             let layers = light_inputs.glass.map(|glass| glass_layers(light, glass));
             let (uniform, variant) = LightUniform::new(light, rays.eye, layers);
-            queue.write_buffer(&view.light_uniforms[i], 0, bytemuck::bytes_of(&uniform));
-            let before = match i {
-                0 => &self.absent.light,
-                _ => &view.sums[(i - 1) % 2],
+            let uniform = view
+                .pool
+                .uniform(device, queue, (Some(i), "light"), &uniform);
+            // The sum of the lights goes to and fro between two pictures; the second is made with the second light.
+            let target = self.sum(device, &mut view.pool, view.size, i % 2);
+            let mut scope = LightScope {
+                device,
+                queue,
+                shared: &self.shared,
+                pool: &mut view.pool,
+                frame,
+                rays: &rays,
+                size: view.size,
+                index: i,
+                light,
+                inputs: *light_inputs,
+                variant,
+                frame_group: self.frame_group(device, &frame_uniform, inputs.depth, &before),
+                light_group: self.light_group(device, &uniform, light_inputs),
+                target: target.clone(),
             };
-            passes.push(LightPass {
-                name: format!("ray march light {i}"),
-                pipeline: self.ray_march.get(device, variant),
-                groups: [
-                    self.frame_group(device, view, inputs.depth, before),
-                    self.light_group(device, &view.light_uniforms[i], light_inputs),
-                    params_group(device, self.ray_march.params(), &view.params_uniform),
-                ],
-                target: i % 2,
-            });
+            passes.extend(frame.technique.passes(&self.programs, &mut scope));
+            before = target;
         }
-        view.prepared = passes;
-        view.composite = Some(self.frame_group(device, view, inputs.depth, view.output()));
+        view.pool.end();
+        view.passes = passes;
+        view.composite = Some(self.frame_group(device, &frame_uniform, inputs.depth, &before));
+        view.output = before;
         Ok(())
     }
 
@@ -253,26 +224,8 @@ impl Effect {
         view: &mut EffectView,
         mut timer: Option<&mut PassTimer>,
     ) {
-        for light in &view.prepared {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(&light.name),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view.sums[light.target],
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                timestamp_writes: timer.as_mut().and_then(|t| t.render_pass(&light.name)),
-                ..Default::default()
-            });
-            pass.set_pipeline(&light.pipeline);
-            for (i, group) in light.groups.iter().enumerate() {
-                pass.set_bind_group(i as u32, group, &[]);
-            }
-            pass.draw(0..3, 0..1);
+        for pass in &view.passes {
+            pass.record(encoder, timer.as_deref_mut());
         }
     }
 
@@ -287,15 +240,15 @@ impl Effect {
     fn frame_group(
         &self,
         device: &wgpu::Device,
-        view: &EffectView,
+        uniform: &wgpu::Buffer,
         depth: &wgpu::TextureView,
         lights_before: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("tyndall frame"),
-            layout: &self.frame_layout,
+            layout: &self.shared.frame_layout,
             entries: &[
-                buffer_entry(0, &view.frame_uniform),
+                buffer_entry(0, uniform),
                 texture_entry(1, depth),
                 texture_entry(2, lights_before),
             ],
@@ -308,20 +261,37 @@ impl Effect {
         uniform: &wgpu::Buffer,
         inputs: &LightInputs<'_>,
     ) -> wgpu::BindGroup {
+        let absent = &self.shared.absent;
         device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("tyndall light"),
-            layout: &self.light_layout,
+            layout: &self.shared.light_layout,
             entries: &[
                 buffer_entry(0, uniform),
-                texture_entry(1, inputs.shadow_map.unwrap_or(&self.absent.shadow_map)),
-                texture_entry(2, inputs.glass.unwrap_or(&self.absent.glass)),
-                texture_entry(3, inputs.texture.unwrap_or(&self.absent.picture)),
+                texture_entry(1, inputs.shadow_map.unwrap_or(&absent.shadow_map)),
+                texture_entry(2, inputs.glass.unwrap_or(&absent.glass)),
+                texture_entry(3, inputs.texture.unwrap_or(&absent.picture)),
                 wgpu::BindGroupEntry {
                     binding: 4,
-                    resource: wgpu::BindingResource::Sampler(&self.sampler),
+                    resource: wgpu::BindingResource::Sampler(&self.shared.sampler),
                 },
             ],
         })
+    }
+
+    /// One of the two pictures that sum up the lights.
+    fn sum(
+        &self,
+        device: &wgpu::Device,
+        pool: &mut Pool,
+        size: [u32; 2],
+        which: usize,
+    ) -> wgpu::TextureView {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC;
+        let key = (None, ["in-scatter, even", "in-scatter, odd"][which]);
+        pool.texture(device, key, extent(size), self.shared.output, usage)
+            .create_view(&wgpu::TextureViewDescriptor::default())
     }
 }
 
@@ -329,8 +299,7 @@ impl EffectView {
     /// In-scattered radiance [W/(m^2 sr)] in rgb, mean transmittance to the surface in a; of the frame recorded last.
     /// The view may be another one after `prepare` with another number of lights.
     pub fn output(&self) -> &wgpu::TextureView {
-        let last = self.prepared.last().map_or(0, |pass| pass.target);
-        &self.sums[last]
+        &self.output
     }
 
     /// Width and height [pixels].
@@ -340,23 +309,7 @@ impl EffectView {
 
     /// Bytes of the textures and buffers this view holds.
     pub fn bytes(&self) -> u64 {
-        let texel = u64::from(self.format.block_copy_size(None).unwrap_or(0));
-        let picture = u64::from(self.size[0]) * u64::from(self.size[1]) * texel;
-        let buffers = [&self.frame_uniform, &self.params_uniform]
-            .into_iter()
-            .chain(&self.light_uniforms);
-        picture * self.sums.len() as u64 + buffers.map(wgpu::Buffer::size).sum::<u64>()
-    }
-
-    /// Makes what this many lights need.
-    fn grow(&mut self, device: &wgpu::Device, lights: usize) {
-        while self.light_uniforms.len() < lights {
-            self.light_uniforms
-                .push(uniform_buffer::<LightUniform>(device, "tyndall light"));
-        }
-        if lights > 1 && self.sums.len() == 1 {
-            self.sums.push(sum_texture(device, self.size, self.format));
-        }
+        self.pool.bytes()
     }
 }
 
@@ -375,49 +328,13 @@ fn glass_layers(light: &Light, glass: &wgpu::TextureView) -> u32 {
     glass.texture().depth_or_array_layers() / validate::faces(light)
 }
 
-fn uniform_buffer<T>(device: &wgpu::Device, label: &str) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: size_of::<T>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
-}
-
-fn sum_texture(
-    device: &wgpu::Device,
-    size: [u32; 2],
-    format: wgpu::TextureFormat,
-) -> wgpu::TextureView {
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("tyndall in-scatter"),
-        size: wgpu::Extent3d {
-            width: size[0],
-            height: size[1],
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-fn params_group(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    params: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("tyndall params"),
-        layout,
-        entries: &[buffer_entry(0, params)],
-    })
+/// The extent of a plain 2-D texture.
+fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
+    wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    }
 }
 
 fn buffer_entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {

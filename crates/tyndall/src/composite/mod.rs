@@ -1,7 +1,7 @@
 //! The picture behind the medium: background * transmittance + in-scattered light, `composite.wgsl`.
 
 use crate::gpu::{
-    pipeline::full_screen,
+    program::full_screen,
     shader::{self, FRAME_MODULES},
 };
 

@@ -1,7 +1,10 @@
-//! GPU machinery that knows nothing of techniques: shader modules, uniforms, layouts, timing.
+//! GPU machinery that knows nothing of techniques: passes, pipelines, resources, uniforms, timing.
 
 pub(crate) mod layout;
-pub(crate) mod pipeline;
+pub(crate) mod pass;
+pub(crate) mod pool;
+pub(crate) mod program;
+pub(crate) mod scope;
 pub(crate) mod shader;
 mod timer;
 pub(crate) mod uniforms;

@@ -8,6 +8,15 @@ pub mod reference;
 
 use crate::{cpu::CpuScene, error::PrepareError};
 use params::Parameters;
+#[cfg(feature = "gpu")]
+use {
+    crate::{
+        effect::LightInputs,
+        frame::Light,
+        gpu::{pass::Pass, program::ScreenProgram, scope::LightScope},
+    },
+    std::sync::OnceLock,
+};
 
 pub use params::{ParamError, ParamInfo, Value};
 
@@ -139,6 +148,42 @@ impl Technique {
             Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
+        }
+    }
+}
+
+/// The GPU programs of every technique, made when it is first prepared.
+#[cfg(feature = "gpu")]
+#[derive(Default)]
+pub(crate) struct Programs {
+    ray_march: OnceLock<ScreenProgram>,
+}
+
+#[cfg(feature = "gpu")]
+impl Technique {
+    /// Checks what the device's limits say about a light, before anything is made.
+    pub(crate) fn check_gpu(
+        &self,
+        _limits: &wgpu::Limits,
+        _size: [u32; 2],
+        _index: usize,
+        _light: &Light,
+        _inputs: &LightInputs<'_>,
+    ) -> Result<(), PrepareError> {
+        Ok(())
+    }
+
+    /// The passes of one light on the GPU.
+    pub(crate) fn passes(&self, programs: &Programs, scope: &mut LightScope<'_>) -> Vec<Pass> {
+        let (device, shared) = (scope.device, scope.shared);
+        match self {
+            Self::RayMarch(p) => {
+                let program = &programs.ray_march;
+                let program = program.get_or_init(|| ray_march::gpu::program(device, shared));
+                ray_march::gpu::passes(p, program, scope)
+            }
+            // Refused by the table: they have no GPU side.
+            Self::MinMax(_) | Self::Reference(_) | Self::Incremental(_) => Vec::new(),
         }
     }
 }

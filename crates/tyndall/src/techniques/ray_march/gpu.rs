@@ -3,7 +3,12 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::{Params, Spacing};
-use crate::gpu::{layout, pipeline::LightPipelines};
+use crate::gpu::{
+    layout,
+    pass::Pass,
+    program::ScreenProgram,
+    scope::{LightScope, Shared},
+};
 
 /// The pass.
 pub(crate) const RAY_MARCH: &str = include_str!("ray_march.wgsl");
@@ -30,24 +35,18 @@ impl ParamsUniform {
     }
 }
 
-/// The pass's pipelines.
-pub(crate) fn pipelines(
-    device: &wgpu::Device,
-    frame: &wgpu::BindGroupLayout,
-    light: &wgpu::BindGroupLayout,
-    output: wgpu::TextureFormat,
-) -> LightPipelines {
-    let params = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("ray march params"),
-        entries: &[layout::uniform::<ParamsUniform>(0)],
-    });
-    LightPipelines::new(
-        device,
-        "ray march",
-        RAY_MARCH,
-        "ray_march",
-        [frame, light],
-        params,
-        output,
-    )
+/// The technique's shader.
+pub(crate) fn program(device: &wgpu::Device, shared: &Shared) -> ScreenProgram {
+    let own = [layout::uniform::<ParamsUniform>(0)];
+    ScreenProgram::new(device, shared, "ray march", &[RAY_MARCH], "ray_march", &own)
+}
+
+/// The passes of one light.
+pub(crate) fn passes(
+    params: &Params,
+    program: &ScreenProgram,
+    scope: &mut LightScope<'_>,
+) -> Vec<Pass> {
+    let params = scope.uniform("ray march params", &ParamsUniform::new(params));
+    vec![scope.full_screen(program, "ray march", &[params.as_entire_binding()])]
 }

@@ -1,0 +1,75 @@
+//! What a technique asks of the GPU: passes as data, in the order they run.
+
+use super::PassTimer;
+
+/// A pass with a name that timings and captures show.
+pub(crate) struct Pass {
+    pub(crate) name: String,
+    pub(crate) work: Work,
+}
+
+/// What a pass does.
+pub(crate) enum Work {
+    /// Dispatches, each of which sees what the ones before it wrote.
+    Compute(Vec<Dispatch>),
+    /// A triangle over the whole of a picture, whose former content is lost.
+    FullScreen(FullScreen),
+}
+
+/// One dispatch.
+pub(crate) struct Dispatch {
+    pub(crate) pipeline: wgpu::ComputePipeline,
+    /// Bind groups 0, 1 and so on.
+    pub(crate) groups: Vec<wgpu::BindGroup>,
+    pub(crate) workgroups: [u32; 3],
+}
+
+/// One full-screen draw.
+pub(crate) struct FullScreen {
+    pub(crate) pipeline: wgpu::RenderPipeline,
+    /// Bind groups 0, 1 and so on.
+    pub(crate) groups: Vec<wgpu::BindGroup>,
+    pub(crate) target: wgpu::TextureView,
+}
+
+impl Pass {
+    pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut PassTimer>) {
+        match &self.work {
+            Work::Compute(dispatches) => {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some(&self.name),
+                    timestamp_writes: timer.and_then(|t| t.compute_pass(&self.name)),
+                });
+                for dispatch in dispatches {
+                    pass.set_pipeline(&dispatch.pipeline);
+                    for (i, group) in dispatch.groups.iter().enumerate() {
+                        pass.set_bind_group(i as u32, group, &[]);
+                    }
+                    let [x, y, z] = dispatch.workgroups;
+                    pass.dispatch_workgroups(x, y, z);
+                }
+            }
+            Work::FullScreen(draw) => {
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some(&self.name),
+                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                        view: &draw.target,
+                        depth_slice: None,
+                        resolve_target: None,
+                        ops: wgpu::Operations {
+                            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                            store: wgpu::StoreOp::Store,
+                        },
+                    })],
+                    timestamp_writes: timer.and_then(|t| t.render_pass(&self.name)),
+                    ..Default::default()
+                });
+                pass.set_pipeline(&draw.pipeline);
+                for (i, group) in draw.groups.iter().enumerate() {
+                    pass.set_bind_group(i as u32, group, &[]);
+                }
+                pass.draw(0..3, 0..1);
+            }
+        }
+    }
+}

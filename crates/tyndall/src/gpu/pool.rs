@@ -1,0 +1,138 @@
+//! Buffers and textures that a view keeps from frame to frame, by name: made when they are first asked for, made anew
+//! when they are asked for with another size or use, dropped when a frame does without them.
+
+use std::collections::HashMap;
+
+/// Whose something is (a light's index, or the view's own) and what it is called.
+pub(crate) type Key = (Option<usize>, &'static str);
+
+#[derive(Default)]
+pub(crate) struct Pool {
+    held: HashMap<Key, Held>,
+    frame: u64,
+}
+
+struct Held {
+    resource: Resource,
+    last_used: u64,
+}
+
+enum Resource {
+    Buffer(wgpu::Buffer),
+    Texture(wgpu::Texture),
+}
+
+impl Pool {
+    /// Begins a frame.
+    pub(crate) fn begin(&mut self) {
+        self.frame += 1;
+    }
+
+    /// Ends a frame: what it did not ask for is dropped.
+    pub(crate) fn end(&mut self) {
+        let frame = self.frame;
+        self.held.retain(|_, held| held.last_used == frame);
+    }
+
+    /// A buffer; its content is what was written to it last, zeros at first.
+    pub(crate) fn buffer(
+        &mut self,
+        device: &wgpu::Device,
+        key: Key,
+        size: u64,
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        let fits = |b: &wgpu::Buffer| b.size() == size && b.usage() == usage;
+        if let Some(Resource::Buffer(buffer)) = self.find(key)
+            && fits(buffer)
+        {
+            return buffer.clone();
+        }
+        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(key.1),
+            size,
+            usage,
+            mapped_at_creation: false,
+        });
+        self.hold(key, Resource::Buffer(buffer.clone()));
+        buffer
+    }
+
+    /// A texture; its content is what was written to it last, zeros at first.
+    pub(crate) fn texture(
+        &mut self,
+        device: &wgpu::Device,
+        key: Key,
+        size: wgpu::Extent3d,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        let fits =
+            |t: &wgpu::Texture| t.size() == size && t.format() == format && t.usage() == usage;
+        if let Some(Resource::Texture(texture)) = self.find(key)
+            && fits(texture)
+        {
+            return texture.clone();
+        }
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(key.1),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        });
+        self.hold(key, Resource::Texture(texture.clone()));
+        texture
+    }
+
+    /// A uniform buffer that holds `value`.
+    pub(crate) fn uniform<T: bytemuck::Pod>(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        key: Key,
+        value: &T,
+    ) -> wgpu::Buffer {
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let buffer = self.buffer(device, key, size_of::<T>() as u64, usage);
+        queue.write_buffer(&buffer, 0, bytemuck::bytes_of(value));
+        buffer
+    }
+
+    /// Bytes of all that is held.
+    pub(crate) fn bytes(&self) -> u64 {
+        let bytes = |held: &Held| match &held.resource {
+            Resource::Buffer(buffer) => buffer.size(),
+            Resource::Texture(texture) => {
+                let texel = texture.format().block_copy_size(None).unwrap_or(0);
+                let size = texture.size();
+                u64::from(size.width)
+                    * u64::from(size.height)
+                    * u64::from(size.depth_or_array_layers)
+                    * u64::from(texel)
+            }
+        };
+        self.held.values().map(bytes).sum()
+    }
+
+    fn find(&mut self, key: Key) -> Option<&Resource> {
+        let frame = self.frame;
+        let held = self.held.get_mut(&key)?;
+        held.last_used = frame;
+        Some(&held.resource)
+    }
+
+    fn hold(&mut self, key: Key, resource: Resource) {
+        let last_used = self.frame;
+        self.held.insert(
+            key,
+            Held {
+                resource,
+                last_used,
+            },
+        );
+    }
+}

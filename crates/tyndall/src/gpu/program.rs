@@ -1,0 +1,168 @@
+//! Shaders that read a light, and their pipelines: one a kind of light, compiled when the first such light is prepared.
+
+use std::{
+    collections::HashMap,
+    sync::{Mutex, PoisonError},
+};
+
+use super::{
+    scope::Shared,
+    shader::{self, FRAME_MODULES, LIGHT_MODULES},
+    uniforms::LightVariant,
+};
+
+/// A full-screen pipeline that writes `target`.
+pub(crate) fn full_screen(
+    device: &wgpu::Device,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    layout: &wgpu::PipelineLayout,
+    target: wgpu::ColorTargetState,
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(label),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("frame_full_screen"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                ..Default::default()
+            },
+            targets: &[Some(target)],
+        }),
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// A shader over bind groups 0 (frame), 1 (light) and 2 (its own).
+pub(crate) struct Recipe {
+    label: &'static str,
+    entry_point: &'static str,
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    own: wgpu::BindGroupLayout,
+    /// What a full-screen pass writes.
+    target: wgpu::TextureFormat,
+}
+
+/// A kind of pipeline.
+pub(crate) trait Pipeline: Clone {
+    fn make(device: &wgpu::Device, recipe: &Recipe, constants: &[(&str, f64)]) -> Self;
+}
+
+impl Pipeline for wgpu::ComputePipeline {
+    fn make(device: &wgpu::Device, recipe: &Recipe, constants: &[(&str, f64)]) -> Self {
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(recipe.label),
+            layout: Some(&recipe.layout),
+            module: &recipe.module,
+            entry_point: Some(recipe.entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                ..Default::default()
+            },
+            cache: None,
+        })
+    }
+}
+
+impl Pipeline for wgpu::RenderPipeline {
+    fn make(device: &wgpu::Device, recipe: &Recipe, constants: &[(&str, f64)]) -> Self {
+        full_screen(
+            device,
+            recipe.label,
+            &recipe.module,
+            recipe.entry_point,
+            &recipe.layout,
+            recipe.target.into(),
+            constants,
+        )
+    }
+}
+
+/// A shader and the pipelines made of it.
+pub(crate) struct Program<P> {
+    recipe: Recipe,
+    made: Mutex<HashMap<LightVariant, P>>,
+}
+
+/// A program of dispatches.
+pub(crate) type ComputeProgram = Program<wgpu::ComputePipeline>;
+/// A program that computes a picture.
+pub(crate) type ScreenProgram = Program<wgpu::RenderPipeline>;
+
+impl<P: Pipeline> Program<P> {
+    /// `wgsl` is what stands behind the modules of frame and light; `own` lays out bind group 2; a full-screen program
+    /// writes the effect's output.
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        shared: &Shared,
+        label: &'static str,
+        wgsl: &[&str],
+        entry_point: &'static str,
+        own: &[wgpu::BindGroupLayoutEntry],
+    ) -> Self {
+        let own = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(label),
+            entries: own,
+        });
+        let groups = [
+            Some(&shared.frame_layout),
+            Some(&shared.light_layout),
+            Some(&own),
+        ];
+        let recipe = Recipe {
+            label,
+            entry_point,
+            module: shader::create(device, label, &[FRAME_MODULES, LIGHT_MODULES, wgsl]),
+            layout: device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(label),
+                bind_group_layouts: &groups,
+                immediate_size: 0,
+            }),
+            own,
+            target: shared.output,
+        };
+        Self {
+            recipe,
+            made: Mutex::default(),
+        }
+    }
+
+    /// Bind group 2 of these resources, at bindings 0, 1 and so on.
+    pub(crate) fn bind(
+        &self,
+        device: &wgpu::Device,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = (0..)
+            .zip(resources.iter().cloned())
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.recipe.label),
+            layout: &self.recipe.own,
+            entries: &entries,
+        })
+    }
+
+    /// The pipeline for this kind of light.
+    pub(crate) fn get(&self, device: &wgpu::Device, variant: LightVariant) -> P {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        let make = || P::make(device, &self.recipe, &variant.constants());
+        made.entry(variant).or_insert_with(make).clone()
+    }
+}

@@ -1,0 +1,130 @@
+//! What a technique sees when it prepares a light: the frame, the light's inputs, and where to keep things.
+
+use super::{
+    layout::{self, Absent},
+    pass::{Dispatch, FullScreen, Pass, Work},
+    pool::Pool,
+    program::{ComputeProgram, ScreenProgram},
+    uniforms::LightVariant,
+};
+use crate::{
+    camera::CameraRays,
+    effect::LightInputs,
+    frame::{Frame, Light},
+};
+
+/// What all passes of an effect share.
+pub(crate) struct Shared {
+    pub(crate) frame_layout: wgpu::BindGroupLayout,
+    pub(crate) light_layout: wgpu::BindGroupLayout,
+    pub(crate) absent: Absent,
+    /// Bilinear, clamped to the edge.
+    pub(crate) sampler: wgpu::Sampler,
+    /// Format of the in-scattered light.
+    pub(crate) output: wgpu::TextureFormat,
+}
+
+impl Shared {
+    pub(crate) fn new(device: &wgpu::Device, output: wgpu::TextureFormat) -> Self {
+        Self {
+            frame_layout: layout::frame(device),
+            light_layout: layout::light(device),
+            absent: Absent::new(device),
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("tyndall bilinear"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+            output,
+        }
+    }
+}
+
+/// One light of a frame that is being prepared.
+pub(crate) struct LightScope<'a> {
+    pub(crate) device: &'a wgpu::Device,
+    pub(crate) queue: &'a wgpu::Queue,
+    pub(crate) shared: &'a Shared,
+    pub(crate) pool: &'a mut Pool,
+    pub(crate) frame: &'a Frame,
+    pub(crate) rays: &'a CameraRays,
+    /// Width and height of the picture [pixels].
+    pub(crate) size: [u32; 2],
+    pub(crate) index: usize,
+    pub(crate) light: &'a Light,
+    pub(crate) inputs: LightInputs<'a>,
+    pub(crate) variant: LightVariant,
+    /// Bind group 0, with the lights before this one.
+    pub(crate) frame_group: wgpu::BindGroup,
+    /// Bind group 1.
+    pub(crate) light_group: wgpu::BindGroup,
+    /// What the last pass writes: the lights so far and this one (rgb), and the mean transmittance (a).
+    pub(crate) target: wgpu::TextureView,
+}
+
+impl LightScope<'_> {
+    /// A uniform buffer of this light that holds `value`.
+    pub(crate) fn uniform<T: bytemuck::Pod>(
+        &mut self,
+        name: &'static str,
+        value: &T,
+    ) -> wgpu::Buffer {
+        self.pool
+            .uniform(self.device, self.queue, (Some(self.index), name), value)
+    }
+
+    /// A pass of one dispatch over the frame, the light and `resources`.
+    pub(crate) fn compute(
+        &self,
+        program: &ComputeProgram,
+        name: &str,
+        resources: &[wgpu::BindingResource<'_>],
+        workgroups: [u32; 3],
+    ) -> Pass {
+        Pass {
+            name: self.pass_name(name),
+            work: Work::Compute(vec![self.dispatch(program, resources, workgroups)]),
+        }
+    }
+
+    /// One dispatch over the frame, the light and `resources`.
+    pub(crate) fn dispatch(
+        &self,
+        program: &ComputeProgram,
+        resources: &[wgpu::BindingResource<'_>],
+        workgroups: [u32; 3],
+    ) -> Dispatch {
+        Dispatch {
+            pipeline: program.get(self.device, self.variant),
+            groups: self.groups(program.bind(self.device, resources)),
+            workgroups,
+        }
+    }
+
+    /// The pass that writes the target.
+    pub(crate) fn full_screen(
+        &self,
+        program: &ScreenProgram,
+        name: &str,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> Pass {
+        Pass {
+            name: self.pass_name(name),
+            work: Work::FullScreen(FullScreen {
+                pipeline: program.get(self.device, self.variant),
+                groups: self.groups(program.bind(self.device, resources)),
+                target: self.target.clone(),
+            }),
+        }
+    }
+
+    /// A pass's name with its light's index.
+    pub(crate) fn pass_name(&self, name: &str) -> String {
+        format!("{name} light {}", self.index)
+    }
+
+    fn groups(&self, own: wgpu::BindGroup) -> Vec<wgpu::BindGroup> {
+        vec![self.frame_group.clone(), self.light_group.clone(), own]
+    }
+}
