@@ -16,6 +16,12 @@ pub(crate) fn uniform<T>(binding: u32) -> wgpu::BindGroupLayoutEntry {
     )
 }
 
+/// The airlight tables ([`AirlightPictures`](super::airlight::AirlightPictures)) at `binding`.
+pub(crate) fn airlight(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    let texels = wgpu::TextureSampleType::Float { filterable: false };
+    texture(binding, texels, wgpu::TextureViewDimension::D2Array)
+}
+
 fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,

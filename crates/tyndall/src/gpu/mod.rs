@@ -1,5 +1,6 @@
 //! GPU machinery that knows nothing of techniques: passes, pipelines, resources, uniforms, timing.
 
+pub(crate) mod airlight;
 pub(crate) mod layout;
 pub(crate) mod pass;
 pub(crate) mod pool;

@@ -1,6 +1,7 @@
 //! What a technique sees when it prepares a light: the frame, the light's inputs, and where to keep things.
 
 use super::{
+    airlight::AirlightPictures,
     layout::{self, Absent},
     pass::{Dispatch, FullScreen, Pass, Work},
     pool::Pool,
@@ -22,6 +23,7 @@ pub(crate) struct Shared {
     pub(crate) sampler: wgpu::Sampler,
     /// Format of the in-scattered light.
     pub(crate) output: wgpu::TextureFormat,
+    airlight: AirlightPictures,
 }
 
 impl Shared {
@@ -37,6 +39,7 @@ impl Shared {
                 ..Default::default()
             }),
             output,
+            airlight: AirlightPictures::default(),
         }
     }
 }
@@ -64,6 +67,12 @@ pub(crate) struct LightScope<'a> {
 }
 
 impl LightScope<'_> {
+    /// The airlight tables of the frame's medium, one layer a component.
+    pub(crate) fn airlight(&self) -> wgpu::TextureView {
+        let pictures = &self.shared.airlight;
+        pictures.of(self.device, self.queue, &self.frame.medium)
+    }
+
     /// A uniform buffer of this light that holds `value`.
     pub(crate) fn uniform<T: bytemuck::Pod>(
         &mut self,

@@ -5,7 +5,6 @@ pub(crate) const PHASE: &str = include_str!("../physics/phase.wgsl");
 /// Extinction.
 pub(crate) const TRANSMITTANCE: &str = include_str!("../physics/transmittance.wgsl");
 /// Airlight of point lights; needs a texture `airlight_table`.
-#[cfg(test)]
 pub(crate) const AIRLIGHT: &str = include_str!("../physics/airlight.wgsl");
 /// Media; needs `FRAME`.
 pub(crate) const MEDIUM: &str = include_str!("../physics/medium.wgsl");
