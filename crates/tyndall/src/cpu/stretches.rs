@@ -185,4 +185,195 @@ mod tests {
             ]
         );
     }
+
+    /// `stretch.wgsl` as the test harness can bind it: all in group 0, made for one kind of light.
+    #[cfg(feature = "gpu")]
+    fn stretch_modules(kind: u32) -> Vec<String> {
+        use crate::gpu::shader::{AIRLIGHT, FRAME_MODULES, LIGHT_MODULES, STRETCH};
+        let declared = "@group(0) @binding(20) var airlight_table: texture_2d_array<f32>;";
+        [FRAME_MODULES, LIGHT_MODULES, &[AIRLIGHT, STRETCH, declared]]
+            .concat()
+            .iter()
+            .map(|module| {
+                module
+                    .replace("@group(1) @binding(", "@group(0) @binding(1")
+                    .replace(
+                        "LIGHT_KIND: u32 = 0u",
+                        &format!("LIGHT_KIND: u32 = {kind}u"),
+                    )
+            })
+            .collect()
+    }
+
+    /// The GPU's closed forms and its four-point panels against f64 quadrature, relative to the whole ray.
+    #[cfg(feature = "gpu")]
+    #[test]
+    fn wgsl_twin_agrees() {
+        use crate::{
+            camera::CameraRays,
+            frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase},
+            gpu::{
+                airlight::AirlightPictures,
+                uniforms::{FrameUniform, LightUniform},
+            },
+            physics::medium::Optics,
+            techniques::Technique,
+        };
+        use tyndall_testkit::{device::device_or_skip, samples, wgsl};
+        use wgpu::util::DeviceExt;
+        let Some(gpu) = device_or_skip("stretch.wgsl") else {
+            return;
+        };
+        let component = |scale: f32, phase| MediumComponent {
+            sigma_s: [0.04 * scale, 0.06 * scale, 0.09 * scale],
+            sigma_a: [0.01, 0.01, 0.02],
+            phase,
+        };
+        let medium = Medium {
+            components: vec![
+                component(1.0, Phase::HenyeyGreenstein { g: 0.5 }),
+                component(0.3, Phase::Rayleigh),
+            ],
+        };
+        let (position, direction) = ([0.4, 1.5, -3.0], [0.3, -0.5, 0.8]);
+        let intensity = [4.0, 3.0, 2.0];
+        let spot = |inner, outer| Emitter::Spot {
+            position,
+            direction,
+            intensity,
+            inner,
+            outer,
+        };
+        // The emitter, and the bound of its error; measured on lavapipe: 2.3e-7, 3.0e-4, 4.2e-4, 5.7e-5, 3.8e-4.
+        let lights = [
+            (
+                Emitter::Directional {
+                    direction,
+                    illuminance: intensity,
+                },
+                1e-6,
+            ),
+            (
+                Emitter::Point {
+                    position,
+                    intensity,
+                },
+                5e-4,
+            ),
+            (spot(0.2, 0.5), 6e-4),
+            (spot(0.0, 1.3), 1e-4),
+            (spot(0.49, 0.5), 6e-4),
+        ];
+        let camera = Camera::perspective(
+            [0.0; 3],
+            [0.0, 0.0, -1.0],
+            [0.0, 1.0, 0.0],
+            1.0,
+            1.0,
+            0.1,
+            50.0,
+        );
+        let rays = CameraRays::new(&camera, [8, 8]);
+        // A place the ray passes, its direction from there, distance to there, start and length of the stretch.
+        let ranges = [
+            -3.0..=3.0,
+            -3.0..=3.0,
+            -6.0..=3.0,
+            -1.0..=1.0,
+            -1.0..=1.0,
+            -1.0..=1.0,
+            0.0..=8.0,
+            0.0..=8.0,
+        ];
+        let inputs = samples::in_box(5, 2_000, ranges);
+        for (emitter, stated) in lights {
+            let light = Light {
+                emitter,
+                shadow: None,
+                texture: None,
+            };
+            let frame = Frame {
+                camera,
+                lights: vec![light],
+                medium: medium.clone(),
+                technique: Technique::default(),
+            };
+            let uniform = |bytes: &[u8]| {
+                gpu.device
+                    .create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                        label: None,
+                        contents: bytes,
+                        usage: wgpu::BufferUsages::UNIFORM,
+                    })
+            };
+            let (light_uniform, variant) = LightUniform::new(&light, DVec3::ZERO, None);
+            let frame_buffer = uniform(bytemuck::bytes_of(&FrameUniform::new(
+                &frame,
+                &rays,
+                [8, 8],
+            )));
+            let light_buffer = uniform(bytemuck::bytes_of(&light_uniform));
+            let tables = AirlightPictures::default().of(&gpu.device, &gpu.queue, &medium);
+            let bindings = [
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: frame_buffer.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 10,
+                    resource: light_buffer.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 20,
+                    resource: wgpu::BindingResource::TextureView(&tables),
+                },
+            ];
+            let modules = stretch_modules(variant.kind);
+            let modules: Vec<&str> = modules.iter().map(String::as_str).collect();
+            let found = wgsl::evaluate_with(
+                gpu,
+                &modules,
+                &bindings,
+                "stretch_plain(Ray(vec3f(x[0], x[1], x[2]), 0.0, normalize(vec3f(x[3], x[4], x[5]))), x[6], x[6] + x[7]), 0.0",
+                &inputs,
+            )
+            .expect("the shader runs");
+            let model = &LightModel::samples(&light, None)[0];
+            let scene = CpuScene {
+                camera: rays.clone(),
+                size: [8, 8],
+                depth: &[],
+                optics: Optics::new(&medium),
+                lights: Vec::new(),
+                occluders: None,
+            };
+            let mut worst = 0.0_f64;
+            for (x, found) in inputs.iter().zip(found) {
+                let x = x.map(f64::from);
+                let ray = Ray {
+                    origin: DVec3::new(x[0], x[1], x[2]),
+                    direction: DVec3::new(x[3], x[4], x[5]).normalize(),
+                    length: 0.0,
+                };
+                let over = |span: [f64; 2]| {
+                    let span = model.reach(ray.origin, ray.direction, span);
+                    if span[0] >= span[1] {
+                        return DVec3::ZERO;
+                    }
+                    integrate_lit(&ray, model, &scene, 1e-7, span, &mut Vec::new())
+                };
+                let (exact, whole) = (over([x[6], x[6] + x[7]]), over([0.0, 40.0]));
+                let found = DVec3::new(found[0].into(), found[1].into(), found[2].into());
+                if whole.min_element() > 0.0 {
+                    worst = worst.max(((found - exact).abs() / whole).max_element());
+                } else {
+                    assert_eq!(found, DVec3::ZERO, "{emitter:?}: {x:?}");
+                }
+            }
+            assert!(
+                worst < stated,
+                "{emitter:?}: {worst:.1e}, stated {stated:.0e}"
+            );
+        }
+    }
 }

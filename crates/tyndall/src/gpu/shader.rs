@@ -16,6 +16,8 @@ pub(crate) const FRAME: &str = include_str!("frame.wgsl");
 pub(crate) const CONE: &str = include_str!("../light/cone.wgsl");
 /// Bind group 1: lights.
 pub(crate) const LIGHT: &str = include_str!("../light/light.wgsl");
+/// Lit stretches of view rays; needs `AIRLIGHT` and its texture.
+pub(crate) const STRETCH: &str = include_str!("../light/stretch.wgsl");
 /// Bind group 1: shadow maps.
 pub(crate) const SHADOW: &str = include_str!("../shadow/shadow.wgsl");
 

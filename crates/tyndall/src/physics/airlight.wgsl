@@ -69,6 +69,9 @@ fn airlight_channel(layer: u32, sigma_t: f32, light: AirlightLight, stretch: vec
 }
 
 fn airlight_segment(layer: u32, sigma_t: vec3f, light: AirlightLight, stretch: vec2f) -> vec3f {
+    if all(sigma_t == sigma_t.rrr) {
+        return vec3f(airlight_channel(layer, sigma_t.r, light, stretch));
+    }
     return vec3f(
         airlight_channel(layer, sigma_t.r, light, stretch),
         airlight_channel(layer, sigma_t.g, light, stretch),

@@ -1,0 +1,88 @@
+// The light that a stretch of a view ray scatters towards the eye where nothing shades it, of a light without a picture.
+// The shader that uses it declares `var airlight_table: texture_2d_array<f32>`, one layer a component of the medium.
+
+// Gauss-Legendre's four points on [-1, 1]: abscissa, weight; the other two mirror them.
+const STRETCH_GAUSS = array<vec2f, 2>(
+    vec2f(0.33998104358485626, 0.65214515486254614),
+    vec2f(0.86113631159405258, 0.34785484513745386),
+);
+// Angle at the light [rad] that four points are spent on.
+const STRETCH_PANEL: f32 = 0.5;
+
+// The light's place seen from the ray.
+fn stretch_light(ray: Ray) -> AirlightLight {
+    let to_light = light.position - ray.origin;
+    let projection = dot(to_light, ray.direction);
+    return AirlightLight(projection, max(length(to_light - projection * ray.direction), LIGHT_RADIUS));
+}
+
+// Chen 2011, eq. 1 over the distances a..b [m], unshadowed: radiance [W/(m^2 sr)]. Zero where a >= b.
+fn stretch_plain(ray: Ray, a: f32, b: f32) -> vec3f {
+    if a >= b {
+        return vec3f(0.0);
+    }
+    if LIGHT_KIND == LIGHT_DIRECTIONAL {
+        let scattering = medium_scattering(-dot(light.direction, ray.direction));
+        return light.color * scattering * transmittance_integral(frame.medium.sigma_t, a, b);
+    }
+    if LIGHT_KIND == LIGHT_POINT {
+        return stretch_point(stretch_light(ray), vec2f(a, b));
+    }
+    return stretch_spot(ray, vec2f(a, b));
+}
+
+// A light that shines evenly: the airlight tables.
+fn stretch_point(place: AirlightLight, stretch: vec2f) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < frame.medium.count; i++) {
+        sum += frame.medium.components[i].sigma_s * airlight_segment(i, frame.medium.sigma_t, place, stretch);
+    }
+    return light.color * sum;
+}
+
+// A cone: as a point light inside the inner cone, by quadrature where it fades.
+fn stretch_spot(ray: Ray, stretch: vec2f) -> vec3f {
+    let from_light = ray.origin - light.position;
+    let outer = light_cone_interval(from_light, ray.direction, light.direction, light.cos_outer, stretch);
+    if outer.x >= outer.y {
+        return vec3f(0.0);
+    }
+    let inner = light_cone_interval(from_light, ray.direction, light.direction, light.cos_inner, outer);
+    if inner.x >= inner.y {
+        return stretch_fading(ray, outer);
+    }
+    return stretch_point(stretch_light(ray), inner)
+        + stretch_fading(ray, vec2f(outer.x, inner.x))
+        + stretch_fading(ray, vec2f(inner.y, outer.y));
+}
+
+// Between the inner and the outer cone: Gauss-Legendre over xi, s = t_p + h tan(xi) (Kulla & Fajardo 2012).
+fn stretch_fading(ray: Ray, stretch: vec2f) -> vec3f {
+    if stretch.x >= stretch.y {
+        return vec3f(0.0);
+    }
+    let place = stretch_light(ray);
+    let nearest = ray.origin + place.projection * ray.direction - light.position;
+    // cos(angle to the axis) = (cos xi, sin xi) . axis
+    let axis = vec2f(dot(nearest, light.direction) / place.height, dot(ray.direction, light.direction));
+    let xi = atan((stretch - place.projection) / place.height);
+    let panels = ceil((xi.y - xi.x) / STRETCH_PANEL);
+    let half = 0.5 * (xi.y - xi.x) / panels;
+    var sum = vec3f(0.0);
+    for (var i = 0.0; i < panels; i += 1.0) {
+        let middle = xi.x + (2.0 * i + 1.0) * half;
+        for (var k = 0u; k < 2u; k++) {
+            let offset = half * STRETCH_GAUSS[k].x;
+            sum += STRETCH_GAUSS[k].y
+                * (stretch_density(place, axis, middle - offset) + stretch_density(place, axis, middle + offset));
+        }
+    }
+    return light.color * sum * half / place.height;
+}
+
+// exp(-sigma_t (s + d)) sigma_s rho falloff at xi, where s + d = t_p + h tan(pi / 4 + xi / 2).
+fn stretch_density(place: AirlightLight, axis: vec2f, xi: f32) -> vec3f {
+    let falloff = light_spot_falloff(dot(vec2f(cos(xi), sin(xi)), axis), light.cos_inner, light.cos_outer);
+    let path = place.projection + place.height * tan(0.25 * PI + 0.5 * xi);
+    return falloff * medium_scattering(-sin(xi)) * transmittance(frame.medium.sigma_t, path);
+}
