@@ -62,7 +62,10 @@ impl CameraRays {
     /// The ray through the centre of pixel (x, y), (0, 0) at the top left, that ends at this depth-buffer value.
     pub fn ray(&self, x: u32, y: u32, depth: f32) -> Ray {
         let [x, y] = [x, y].map(|n| f64::from(n) + 0.5);
-        let view_depth = self.view_depth(depth);
+        self.ray_through(x, y, self.view_depth(depth))
+    }
+
+    fn ray_through(&self, x: f64, y: f64, view_depth: f64) -> Ray {
         match self.projection {
             Projection::Perspective { .. } => {
                 let along = self.forward + self.offset(x, y);
@@ -78,6 +81,11 @@ impl CameraRays {
                 length: view_depth.max(0.0),
             },
         }
+    }
+
+    /// The ray through a point of the picture [pixels] up to the far plane.
+    pub(crate) fn ray_to_far(&self, x: f64, y: f64) -> Ray {
+        self.ray_through(x, y, self.planes()[1])
     }
 
     /// Unit direction of the perspective ray through a point of the picture [pixels].
@@ -104,6 +112,20 @@ impl CameraRays {
     /// Angle that a pixel in the middle of a perspective picture takes up vertically [rad].
     pub(crate) fn pixel_angle(&self) -> f64 {
         (2.0 * self.plane().0.y / self.size.y).atan()
+    }
+
+    /// Side of a pixel of an orthographic picture [m].
+    pub(crate) fn pixel_side(&self) -> f64 {
+        2.0 * self.plane().0.y / self.size.y
+    }
+
+    /// True where a point lies on a ray of an orthographic picture, or misses it by less than `margin` pixels.
+    pub(crate) fn sees_point(&self, point: DVec3, margin: f64) -> bool {
+        let from = point - self.eye;
+        let (half_extent, center) = self.plane();
+        let on_plane = DVec2::new(from.dot(self.right), from.dot(self.up)) - center;
+        let reach = half_extent + margin * 2.0 * half_extent / self.size;
+        on_plane.abs().cmple(reach).all()
     }
 
     /// True for a camera whose rays all pass through the eye.

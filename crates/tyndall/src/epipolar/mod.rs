@@ -5,6 +5,9 @@
 //! `gamma` the light ray: its distance from the axis [m] (sun), or its angle at the light from the axis [rad].
 //! With half-planes neither beta nor gamma changes sign.
 
+#[cfg(feature = "gpu")]
+pub(crate) mod gpu;
+pub(crate) mod grid;
 pub(crate) mod low_rank;
 pub(crate) mod rectified;
 pub(crate) mod slices;
@@ -26,6 +29,17 @@ pub struct Resolution {
     pub samples: u32,
     /// Radius about the axis within which rays are walked through the shadow map itself [pixels] (0 to 100).
     pub epipole_radius: f64,
+}
+
+impl Resolution {
+    /// Light rays a slice for a map of so many texels a side: a power of two.
+    pub(crate) fn samples_of(&self, side: usize) -> usize {
+        let samples = match self.samples {
+            0 => side / 2,
+            n => n as usize,
+        };
+        samples.next_power_of_two().clamp(64, 1 << 14)
+    }
 }
 
 impl Default for Resolution {

@@ -15,6 +15,8 @@ pub(crate) enum SliceCount {
     Exactly(usize),
     /// By the half-pixel rule, but at least so many.
     AtLeast(usize),
+    /// By the half-pixel rule, but at most so many.
+    AtMost(usize),
 }
 
 /// Evenly spaced slices over the visible range of alpha.
@@ -24,6 +26,8 @@ pub(crate) struct Slices {
     step: f64,
     /// Number of slices.
     pub(crate) count: usize,
+    /// True where alpha is an angle.
+    turns: bool,
 }
 
 impl Slices {
@@ -35,33 +39,50 @@ impl Slices {
         count: SliceCount,
     ) -> Self {
         let alpha_at = |x: f64, y: f64| frame.view_ray(camera.direction(x, y)).0;
-        let [width, height] = size.map(f64::from);
-        let seen = [frame.axis(), -frame.axis()]
+        let axis_in_picture = [frame.axis(), -frame.axis()]
             .iter()
             .any(|end| camera.sees(*end, 1.0));
-        let [first, range] = if seen {
+        Self::over(alpha_at, true, axis_in_picture, size, count)
+    }
+
+    /// For a picture whose pixel (x, y) has this alpha; `turns` where alpha is an angle about an axis.
+    pub(crate) fn over(
+        alpha_at: impl Fn(f64, f64) -> f64,
+        turns: bool,
+        axis_in_picture: bool,
+        size: [u32; 2],
+        count: SliceCount,
+    ) -> Self {
+        let [width, height] = size.map(f64::from);
+        let difference = |a: f64, b: f64| if turns { turn(a - b) } else { a - b };
+        let [first, range] = if axis_in_picture {
             [0.0, TAU]
         } else {
             // The picture is a convex cone that misses the axis: less than half a turn about its middle.
             let middle = alpha_at(0.5 * width, 0.5 * height);
             let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
-            let turns = corners.map(|[x, y]| turn(alpha_at(x, y) - middle));
-            let low = turns.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = turns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let offsets = corners.map(|[x, y]| difference(alpha_at(x, y), middle));
+            let low = offsets.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = offsets.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             [middle + low, high - low]
         };
+        let half_pixel = || (range / smallest_step(&alpha_at, difference, size)).ceil() as usize;
         let count = match count {
             SliceCount::Exactly(count) => count,
-            SliceCount::AtLeast(least) => {
-                let half_pixel = (range / smallest_step(alpha_at, size)).ceil() as usize;
-                half_pixel.max(least).clamp(1, MAX_SLICES)
-            }
+            SliceCount::AtLeast(least) => half_pixel().max(least).clamp(1, MAX_SLICES),
+            SliceCount::AtMost(most) => half_pixel().clamp(1, most),
         };
         Self {
             first: first + 0.5 * range / count as f64,
             step: range / count as f64,
             count,
+            turns,
         }
+    }
+
+    /// alpha where the first slice begins, and the width of a slice.
+    pub(crate) fn start_and_step(&self) -> [f64; 2] {
+        [self.first - 0.5 * self.step, self.step]
     }
 
     /// alpha of a slice.
@@ -71,7 +92,12 @@ impl Slices {
 
     /// The slice nearest to a view ray's alpha.
     pub(crate) fn nearest(&self, alpha: f64) -> usize {
-        let from_first = turn(alpha - self.first - 0.5 * self.step * (self.count - 1) as f64);
+        let from_middle = alpha - self.first - 0.5 * self.step * (self.count - 1) as f64;
+        let from_first = if self.turns {
+            turn(from_middle)
+        } else {
+            from_middle
+        };
         let index = from_first / self.step + 0.5 * (self.count - 1) as f64;
         index.round().clamp(0.0, (self.count - 1) as f64) as usize
     }
@@ -83,7 +109,11 @@ fn turn(angle: f64) -> f64 {
 }
 
 /// The smallest change of alpha over one pixel across the slices, over a grid of the picture's points.
-fn smallest_step(alpha_at: impl Fn(f64, f64) -> f64, size: [u32; 2]) -> f64 {
+fn smallest_step(
+    alpha_at: impl Fn(f64, f64) -> f64,
+    difference: impl Fn(f64, f64) -> f64,
+    size: [u32; 2],
+) -> f64 {
     const GRID: u32 = 16;
     let [width, height] = size.map(f64::from);
     let mut smallest = f64::INFINITY;
@@ -92,15 +122,15 @@ fn smallest_step(alpha_at: impl Fn(f64, f64) -> f64, size: [u32; 2]) -> f64 {
             let x = width * f64::from(i) / f64::from(GRID);
             let y = height * f64::from(j) / f64::from(GRID);
             let here = alpha_at(x, y);
-            let dx = turn(alpha_at(x + 0.5, y) - here) * 2.0;
-            let dy = turn(alpha_at(x, y + 0.5) - here) * 2.0;
+            let dx = difference(alpha_at(x + 0.5, y), here) * 2.0;
+            let dy = difference(alpha_at(x, y + 0.5), here) * 2.0;
             let step = dx.hypot(dy);
             if step > 1e-9 {
                 smallest = smallest.min(step);
             }
         }
     }
-    smallest.min(TAU)
+    if smallest.is_finite() { smallest } else { TAU }
 }
 
 #[cfg(test)]

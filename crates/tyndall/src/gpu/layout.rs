@@ -16,6 +16,16 @@ pub(crate) fn uniform<T>(binding: u32) -> wgpu::BindGroupLayoutEntry {
     )
 }
 
+/// A storage buffer at `binding`.
+pub(crate) fn storage(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEntry {
+    let buffer = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    entry(binding, buffer)
+}
+
 /// The airlight tables ([`AirlightPictures`](super::airlight::AirlightPictures)) at `binding`.
 pub(crate) fn airlight(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let texels = wgpu::TextureSampleType::Float { filterable: false };

@@ -33,6 +33,14 @@ pub(crate) struct FullScreen {
 }
 
 impl Pass {
+    /// A pass of dispatches.
+    pub(crate) fn compute(name: String, dispatches: Vec<Dispatch>) -> Self {
+        Self {
+            name,
+            work: Work::Compute(dispatches),
+        }
+    }
+
     pub(crate) fn record(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&mut PassTimer>) {
         match &self.work {
             Work::Compute(dispatches) => {

@@ -83,6 +83,13 @@ impl LightScope<'_> {
             .uniform(self.device, self.queue, (Some(self.index), name), value)
     }
 
+    /// A storage buffer of this light.
+    pub(crate) fn storage(&mut self, name: &'static str, bytes: u64) -> wgpu::Buffer {
+        let usage = wgpu::BufferUsages::STORAGE;
+        self.pool
+            .buffer(self.device, (Some(self.index), name), bytes, usage)
+    }
+
     /// A pass of one dispatch over the frame, the light and `resources`.
     pub(crate) fn compute(
         &self,
@@ -91,10 +98,8 @@ impl LightScope<'_> {
         resources: &[wgpu::BindingResource<'_>],
         workgroups: [u32; 3],
     ) -> Pass {
-        Pass {
-            name: self.pass_name(name),
-            work: Work::Compute(vec![self.dispatch(program, resources, workgroups)]),
-        }
+        let dispatch = self.dispatch(program, resources, workgroups);
+        Pass::compute(self.pass_name(name), vec![dispatch])
     }
 
     /// One dispatch over the frame, the light and `resources`.

@@ -4,6 +4,8 @@
 //! light than the texel's depth. The medium needs no bias: a texel's error is as often too near as too far, and the
 //! surface itself has no volume. Outside the map, and where nothing was drawn, everything is lit.
 
+#[cfg(feature = "gpu")]
+pub(crate) mod pyramid;
 pub mod walk;
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};

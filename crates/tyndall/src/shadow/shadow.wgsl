@@ -67,6 +67,32 @@ fn shadow_cube_point(q: vec3f) -> ShadowPoint {
     return ShadowPoint(0.5 + 0.5 * s * inverse, face + u32(negative), light.cube_depth.x * inverse + light.cube_depth.y);
 }
 
+// A light ray on the map: where it falls, in texels, and the terms of shadow_line_end.
+struct ShadowLine {
+    texel: vec2f,
+    face: u32,
+    terms: vec4f,
+}
+
+// Of a light ray from `origin`, a local light's position or any point of the sun's ray, that travels along `way`.
+fn shadow_line(origin: vec3f, way: vec3f) -> ShadowLine {
+    let size = vec2f(textureDimensions(shadow_map));
+    if SHADOW_KIND == SHADOW_CUBE {
+        let point = shadow_cube_point(way);
+        let axis = light.cube_depth.x / (point.depth - light.cube_depth.y);
+        let terms = vec4f(0.0, light.cube_depth.x, light.cube_depth.y * axis, axis);
+        return ShadowLine(point.uv * size, point.face, terms);
+    }
+    let c0 = light.clip_from_world * vec4f(origin, 1.0);
+    let c1 = light.clip_from_world * vec4f(way, 0.0);
+    return ShadowLine(shadow_point(c0 + c1).uv * size, 0u, vec4f(c0.w, c0.z, c1.z, c1.w));
+}
+
+// Distance [m] along the light ray to the plane of this depth: z(t) = depth w(t).
+fn shadow_line_end(line: ShadowLine, depth: f32) -> f32 {
+    return (depth * line.terms.x - line.terms.y) / (line.terms.z - depth * line.terms.w);
+}
+
 // True iff light reaches a point at this depth past what the map holds; 0 is nothing at all.
 fn shadow_reaches(depth: f32, held: f32) -> bool {
     let stored = select(held, 1.0 - held, light.standard_depth == 1u);

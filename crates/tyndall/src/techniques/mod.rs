@@ -157,6 +157,7 @@ impl Technique {
 #[derive(Default)]
 pub(crate) struct Programs {
     ray_march: OnceLock<ScreenProgram>,
+    min_max: OnceLock<min_max::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -182,8 +183,13 @@ impl Technique {
                 let program = program.get_or_init(|| ray_march::gpu::program(device, shared));
                 ray_march::gpu::passes(p, program, scope)
             }
+            Self::MinMax(p) => {
+                let programs = &programs.min_max;
+                let programs = programs.get_or_init(|| min_max::gpu::Programs::new(device, shared));
+                min_max::gpu::passes(p, programs, scope)
+            }
             // Refused by the table: they have no GPU side.
-            Self::MinMax(_) | Self::Reference(_) | Self::Incremental(_) => Vec::new(),
+            Self::Reference(_) | Self::Incremental(_) => Vec::new(),
         }
     }
 }

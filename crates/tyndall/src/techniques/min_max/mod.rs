@@ -22,6 +22,8 @@
 //! gamma. Orthographic cameras have no such slices and are walked.
 
 pub(crate) mod cpu;
+#[cfg(feature = "gpu")]
+pub(crate) mod gpu;
 
 use super::{
     Backends, LightKind, Technique, TechniqueInfo,
@@ -35,7 +37,7 @@ pub(super) const INFO: TechniqueInfo = TechniqueInfo {
     about: "1-D min-max mipmaps over epipolar slices, lit stretches in closed form",
     citation: "Chen, Baran, Durand & Jarosz, Real-Time Volumetric Shadows using 1D Min-Max Mipmaps, I3D 2011",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
-    backends: Backends::Cpu,
+    backends: Backends::Both,
     default: || Technique::MinMax(Params::default()),
 };
 

@@ -1,0 +1,46 @@
+//! The epipolar grid as shaders see it: `epipolar.wgsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+/// What a shader needs that works in epipolar coordinates.
+pub(crate) const EPIPOLAR: &str = include_str!("epipolar.wgsl");
+
+/// `Epipolar` of `epipolar.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct EpipolarUniform {
+    pub(crate) axis: [f32; 3],
+    pub(crate) distance: f32,
+    pub(crate) across_x: [f32; 3],
+    pub(crate) alpha_start: f32,
+    pub(crate) across_y: [f32; 3],
+    pub(crate) alpha_step: f32,
+    pub(crate) gamma_start: f32,
+    pub(crate) gamma_step: f32,
+    pub(crate) b_start: f32,
+    pub(crate) b_scale: f32,
+    pub(crate) slices: u32,
+    pub(crate) samples: u32,
+    pub(crate) least_off_axis: f32,
+    pub(crate) cotangent: f32,
+}
+
+impl EpipolarUniform {
+    /// No slices: every ray is to be walked.
+    pub(crate) const NONE: Self = Self {
+        axis: [0.0, 0.0, 1.0],
+        distance: 1.0,
+        across_x: [1.0, 0.0, 0.0],
+        alpha_start: 0.0,
+        across_y: [0.0, 1.0, 0.0],
+        alpha_step: 1.0,
+        gamma_start: 0.0,
+        gamma_step: 1.0,
+        b_start: 0.0,
+        b_scale: 1.0,
+        slices: 1,
+        samples: 1,
+        least_off_axis: f32::MAX,
+        cotangent: 0.0,
+    };
+}

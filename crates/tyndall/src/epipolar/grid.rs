@@ -1,0 +1,380 @@
+//! The grid that a light's shadow map is rectified to: slices by light rays, over what a camera sees of them.
+//!
+//! ```text
+//! camera        light   alpha (which slice)     gamma (which light ray)        b (which view ray)
+//! perspective   sun     turn about the axis     distance from the axis [m]     angle to the axis
+//! perspective   local   turn about the axis     angle at the light [rad]       angle to the axis
+//! orthographic  sun     offset [m]              offset across the light [m]    offset along the light, sheared [m]
+//! orthographic  local   turn about the axis     angle at the light [rad]       distance from the axis [m]
+//! ```
+//!
+//! The axis runs through the eye, towards the sun or the local light; of an orthographic camera, whose eye is at
+//! infinity, through a local light along the view. In every case `b` is the same all along a view ray, and a light ray
+//! that ends has an S such that a point on it is lit iff b < S (Chen 2011, section 3.2). Angles b are measured on a
+//! scale that grows with the angle and takes one division, [`angle_scale`].
+
+use glam::DVec3;
+
+use super::{
+    Resolution,
+    slices::{SliceCount, Slices},
+};
+use crate::{
+    camera::{CameraRays, Ray},
+    cpu::LightSource,
+    shadow::Face,
+};
+
+/// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
+const DEFAULT_SLICES: usize = 1024;
+
+/// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".
+const STEPS: f64 = 65533.0;
+
+/// A camera's slices of one light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EpipolarGrid {
+    /// Orthographic and sun: the view's angle to the axis as a cotangent.
+    cotangent: f64,
+    orthographic: bool,
+    /// Distance of a local light from the eye [m]; `None`: the sun.
+    local: Option<f64>,
+    origin: DVec3,
+    axis: DVec3,
+    across: [DVec3; 2],
+    pub(crate) slices: Slices,
+    /// Light rays a slice, a power of two.
+    pub(crate) samples: usize,
+    gamma_start: f64,
+    gamma_step: f64,
+    b_start: f64,
+    b_scale: f64,
+    least_off_axis: f64,
+}
+
+/// What of the scene a grid covers.
+pub(crate) struct GridScene<'a> {
+    pub(crate) camera: &'a CameraRays,
+    /// Width and height of the picture [pixels].
+    pub(crate) size: [u32; 2],
+    pub(crate) light: LightSource,
+    /// The way a spot shines, and the angle of its cone [rad].
+    pub(crate) cone: Option<(DVec3, f64)>,
+    /// The light's shadow map; none: nothing casts shadows.
+    pub(crate) faces: &'a [Face],
+    /// Texels of the shadow map, or of one of its faces, a side.
+    pub(crate) side: usize,
+}
+
+/// A view ray in its slice: what `EpipolarRay` of `epipolar.wgsl` is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GridRay {
+    pub(crate) slice: usize,
+    /// On the scale of the nodes.
+    pub(crate) b: f64,
+    off_axis: f64,
+    /// Across the axis at distance s: `c[0] + s c[1]`.
+    c: [f64; 2],
+    /// From the light back along the axis at distance s: `t[0] - s t[1]`.
+    t: [f64; 2],
+}
+
+/// Grows from 0 to 2 as the angle of (along, across) to the axis grows from 0 to pi.
+pub(crate) fn angle_scale(across: f64, along: f64) -> f64 {
+    let share = across / (across + along.abs()).max(1e-300);
+    if along >= 0.0 { share } else { 2.0 - share }
+}
+
+impl EpipolarGrid {
+    /// `None` where there are no slices, and every ray is to be walked: the eye is at the light, the view runs along the
+    /// sun, or nothing casts shadows.
+    pub(crate) fn new(scene: &GridScene<'_>, resolution: &Resolution) -> Option<Self> {
+        if scene.faces.is_empty() {
+            return None;
+        }
+        let camera = scene.camera;
+        let orthographic = !camera.is_perspective();
+        let (axis, across, local) = match scene.light {
+            LightSource::Direction(way) if orthographic => {
+                let axis = -DVec3::from(way);
+                let outward = camera.forward.reject_from_normalized(axis);
+                // Nearly along the sun a ray crosses next to no light rays.
+                let u = (outward.length() > 1e-3).then(|| outward.normalize())?;
+                (axis, [u, axis.cross(u)], None)
+            }
+            LightSource::Direction(way) => {
+                let axis = -DVec3::from(way);
+                (axis, axis.any_orthonormal_pair().into(), None)
+            }
+            LightSource::Position(position) => {
+                let to_light = DVec3::from(position) - camera.eye;
+                let axis = if orthographic {
+                    camera.forward
+                } else {
+                    to_light.try_normalize()?
+                };
+                let distance = to_light.length();
+                (axis, axis.any_orthonormal_pair().into(), Some(distance))
+            }
+        };
+        let pixel = if orthographic {
+            camera.pixel_side()
+        } else {
+            camera.pixel_angle().sin()
+        };
+        let mut grid = Self {
+            cotangent: camera.forward.dot(axis) / camera.forward.dot(across[0]),
+            orthographic,
+            local,
+            origin: match scene.light {
+                LightSource::Position(position) if orthographic => position.into(),
+                _ => camera.eye,
+            },
+            axis,
+            across,
+            slices: Slices::over(|x, _| x, false, false, scene.size, SliceCount::Exactly(1)),
+            samples: resolution.samples_of(scene.side),
+            gamma_start: 0.0,
+            gamma_step: 0.0,
+            b_start: 0.0,
+            b_scale: 1.0,
+            least_off_axis: resolution.epipole_radius * pixel,
+        };
+        grid.slices = grid.choose_slices(scene, resolution);
+        let [start, end] = grid.gamma_range(scene);
+        grid.gamma_start = start;
+        grid.gamma_step = (end - start) / grid.samples as f64;
+        let [low, high] = grid.b_range(scene);
+        grid.b_scale = STEPS / (high - low);
+        grid.b_start = low - 1.0 / grid.b_scale;
+        (end > start && high > low).then_some(grid)
+    }
+
+    /// As shaders see it.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn uniform(&self) -> super::gpu::EpipolarUniform {
+        let [alpha_start, alpha_step] = self.slices.start_and_step().map(|x| x as f32);
+        let floats = |v: DVec3| v.as_vec3().to_array();
+        super::gpu::EpipolarUniform {
+            axis: floats(self.axis),
+            distance: self.local.unwrap_or(0.0) as f32,
+            across_x: floats(self.across[0]),
+            alpha_start,
+            across_y: floats(self.across[1]),
+            alpha_step,
+            gamma_start: self.gamma_start as f32,
+            gamma_step: self.gamma_step as f32,
+            b_start: self.b_start as f32,
+            b_scale: self.b_scale as f32,
+            slices: self.slices.count as u32,
+            samples: self.samples as u32,
+            least_off_axis: self.least_off_axis as f32,
+            cotangent: self.cotangent as f32,
+        }
+    }
+
+    fn choose_slices(&self, scene: &GridScene<'_>, resolution: &Resolution) -> Slices {
+        let camera = scene.camera;
+        let alpha_at = |x, y| self.alpha(&camera.ray_to_far(x, y));
+        let axis_in_picture = match (self.orthographic, self.local) {
+            (false, _) => camera.sees(self.axis, 1.0) || camera.sees(-self.axis, 1.0),
+            (true, Some(_)) => camera.sees_point(self.origin, 1.0),
+            (true, None) => false,
+        };
+        let turns = !(self.orthographic && self.local.is_none());
+        let count = match resolution.slices {
+            0 => SliceCount::AtMost(DEFAULT_SLICES),
+            n => SliceCount::Exactly(n as usize),
+        };
+        Slices::over(alpha_at, turns, axis_in_picture, scene.size, count)
+    }
+
+    fn alpha(&self, ray: &Ray) -> f64 {
+        let [x, y] = match (self.orthographic, self.local) {
+            (false, _) => self.across.map(|u| u.dot(ray.direction)),
+            (true, _) => self.across.map(|u| u.dot(ray.origin - self.origin)),
+        };
+        if self.orthographic && self.local.is_none() {
+            y
+        } else {
+            y.atan2(x)
+        }
+    }
+
+    /// A view ray's place; `None` where it is too near to the axis.
+    pub(crate) fn ray(&self, ray: &Ray) -> Option<GridRay> {
+        let slice = self.slices.nearest(self.alpha(ray));
+        let (b, off_axis, c, t) = match (self.orthographic, self.local) {
+            (false, _) => {
+                let [x, y] = self.across.map(|u| u.dot(ray.direction));
+                let (sine, cosine) = (x.hypot(y), ray.direction.dot(self.axis));
+                let t = [self.local.unwrap_or(0.0), cosine];
+                (angle_scale(sine, cosine), sine, [0.0, sine], t)
+            }
+            (true, Some(_)) => {
+                let from = ray.origin - self.origin;
+                let [x, y] = self.across.map(|u| u.dot(from));
+                let height = x.hypot(y);
+                (height, height, [height, 0.0], [-from.dot(self.axis), 1.0])
+            }
+            (true, None) => {
+                let from = ray.origin - self.origin;
+                let gamma = from.dot(self.across[0]);
+                let sine = ray.direction.dot(self.across[0]);
+                let b = gamma * self.cotangent - from.dot(self.axis);
+                (b, sine, [gamma, sine], [0.0; 2])
+            }
+        };
+        (off_axis > self.least_off_axis).then_some(GridRay {
+            slice,
+            b: (b - self.b_start) * self.b_scale,
+            off_axis,
+            c,
+            t,
+        })
+    }
+
+    /// gamma of the view ray's point at distance `s` [m].
+    fn gamma_at(&self, ray: &GridRay, s: f64) -> f64 {
+        let across = ray.c[0] + s * ray.c[1];
+        match self.local {
+            None => across,
+            Some(_) => across.atan2(ray.t[0] - s * ray.t[1]),
+        }
+    }
+
+    /// Place among the samples of the view ray's point at distance `s` [m].
+    pub(crate) fn sample_at(&self, ray: &GridRay, s: f64) -> f64 {
+        (self.gamma_at(ray, s) - self.gamma_start) / self.gamma_step
+    }
+
+    /// Distance [m] along the view ray where it crosses the border before a sample; infinite where they do not meet.
+    pub(crate) fn crossing(&self, ray: &GridRay, sample: usize) -> f64 {
+        let gamma = self.gamma(sample);
+        if self.local.is_none() {
+            return (gamma - ray.c[0]) / ray.c[1];
+        }
+        let (sine, cosine) = gamma.sin_cos();
+        let divisor = ray.c[1] * cosine + ray.t[1] * sine;
+        if divisor > 1e-12 {
+            (ray.t[0] * sine - ray.c[0] * cosine) / divisor
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// gamma at the border before a sample.
+    pub(crate) fn gamma(&self, sample: usize) -> f64 {
+        self.gamma_start + sample as f64 * self.gamma_step
+    }
+
+    /// The range of gamma that the picture's rays and the light's map may have in common. What a ray meets beyond it
+    /// is walked, so that it need not be exact.
+    fn gamma_range(&self, scene: &GridScene<'_>) -> [f64; 2] {
+        let seen = self.gammas_seen(scene);
+        let covered = match self.local {
+            Some(_) => self.gammas_in_cone(scene.cone),
+            None => self.gammas_of_map(&scene.faces[0]),
+        };
+        [seen[0].max(covered[0]), seen[1].min(covered[1])]
+    }
+
+    /// Over a grid of rays from their start to the far plane.
+    fn gammas_seen(&self, scene: &GridScene<'_>) -> [f64; 2] {
+        const GRID: u32 = 16;
+        let [width, height] = scene.size.map(f64::from);
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for i in 0..(GRID + 1).pow(2) {
+            let share = |n: u32| f64::from(n) / f64::from(GRID);
+            let (x, y) = (
+                width * share(i % (GRID + 1)),
+                height * share(i / (GRID + 1)),
+            );
+            let ray = scene.camera.ray_to_far(x, y);
+            if let Some(place) = self.ray(&ray) {
+                for s in [0.0, ray.length] {
+                    let gamma = self.gamma_at(&place, s);
+                    range = [range[0].min(gamma), range[1].max(gamma)];
+                }
+            }
+        }
+        range
+    }
+
+    /// Angles at the light between the axis and the cone's rays.
+    fn gammas_in_cone(&self, cone: Option<(DVec3, f64)>) -> [f64; 2] {
+        let Some((way, outer)) = cone else {
+            return [0.0, std::f64::consts::PI];
+        };
+        let middle = (-self.axis).angle_between(way);
+        [
+            (middle - outer).max(0.0),
+            (middle + outer).min(std::f64::consts::PI),
+        ]
+    }
+
+    /// Offsets of the sun's rays that the map covers.
+    fn gammas_of_map(&self, face: &Face) -> [f64; 2] {
+        let world_from_clip = face.clip_from_world.inverse();
+        let corner = |x: f64, y: f64| {
+            let p = world_from_clip * glam::DVec4::new(x, y, 0.5, 1.0);
+            let from = p.truncate() / p.w - self.origin;
+            self.across.map(|u| u.dot(from))
+        };
+        let corners = [
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ];
+        let over = |values: [f64; 4]| {
+            [
+                values.into_iter().fold(f64::INFINITY, f64::min),
+                values.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            ]
+        };
+        if self.orthographic {
+            return over(corners.map(|c| c[0]));
+        }
+        let farthest = over(corners.map(|[x, y]| x.hypot(y)))[1];
+        [distance_to_quad(corners), farthest]
+    }
+
+    fn b_range(&self, scene: &GridScene<'_>) -> [f64; 2] {
+        if !self.orthographic {
+            return [0.0, 2.0];
+        }
+        // Of a ray it is linear in the picture's place, or convex with its least value on the axis.
+        let [width, height] = scene.size.map(f64::from);
+        let mut range = match self.local {
+            Some(_) => [0.0, 0.0],
+            None => [f64::INFINITY, f64::NEG_INFINITY],
+        };
+        for (x, y) in [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)] {
+            let from = scene.camera.ray_to_far(x, y).origin - self.origin;
+            let [across, other] = self.across.map(|u| u.dot(from));
+            let b = match self.local {
+                Some(_) => across.hypot(other),
+                None => across * self.cotangent - from.dot(self.axis),
+            };
+            range = [range[0].min(b), range[1].max(b)];
+        }
+        range
+    }
+}
+
+/// Distance of the origin from a convex quadrilateral, zero inside.
+fn distance_to_quad(corners: [[f64; 2]; 4]) -> f64 {
+    use glam::DVec2;
+    let corners = corners.map(DVec2::from);
+    let edges = || (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
+    let side = |(a, b): (DVec2, DVec2)| (b - a).perp_dot(-a);
+    if edges().all(|e| side(e) >= 0.0) || edges().all(|e| side(e) <= 0.0) {
+        return 0.0;
+    }
+    let to_edge = |(a, b): (DVec2, DVec2)| {
+        let along = (-a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
+        (a + along.clamp(0.0, 1.0) * (b - a)).length()
+    };
+    edges().map(to_edge).fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,93 @@
+// A view ray walked through the shadow map texel by texel: the exact limit of marching it; see shadow/walk.rs.
+
+// A ray over one face: (column, row, z, w) = c0 + s c1, homogeneous, in texels; w > 0.
+struct ShadowWalk {
+    c0: vec4f,
+    c1: vec4f,
+    texel: vec2i, // one beyond the border where it is outside the map
+    face: u32,
+    next: vec2f, // distances where the next column and the next row begin
+}
+
+// Right, down and outwards on a cube's face.
+fn shadow_on_face(q: vec3f, face: u32) -> vec3f {
+    switch face {
+        case 0u: { return vec3f(-q.z, -q.y, q.x); }
+        case 1u: { return vec3f(q.z, -q.y, -q.x); }
+        case 2u: { return vec3f(q.x, q.z, q.y); }
+        case 3u: { return vec3f(q.x, -q.z, -q.y); }
+        case 4u: { return vec3f(q.x, -q.y, q.z); }
+        default: { return vec3f(-q.x, -q.y, -q.z); }
+    }
+}
+
+// In the texel that holds the ray's point at distance `probe`.
+fn shadow_walk_from(map_ray: ShadowRay, probe: f32) -> ShadowWalk {
+    let size = vec2f(textureDimensions(shadow_map));
+    var c0 = vec4f(map_ray.c0.x, -map_ray.c0.y, map_ray.c0.zw);
+    var c1 = vec4f(map_ray.c1.x, -map_ray.c1.y, map_ray.c1.zw);
+    var face = 0u;
+    if SHADOW_KIND == SHADOW_CUBE {
+        face = shadow_cube_point(map_ray.c0.xyz + probe * map_ray.c1.xyz).face;
+        let at = shadow_on_face(map_ray.c0.xyz, face);
+        let way = shadow_on_face(map_ray.c1.xyz, face);
+        c0 = vec4f(at.xy, light.cube_depth.x + light.cube_depth.y * at.z, at.z);
+        c1 = vec4f(way.xy, light.cube_depth.y * way.z, way.z);
+    }
+    c0 = vec4f(0.5 * size * (c0.xy + c0.w), c0.zw);
+    c1 = vec4f(0.5 * size * (c1.xy + c1.w), c1.zw);
+    let place = c0 + probe * c1;
+    var texel = vec2i(clamp(floor(place.xy / max(place.w, 1e-20)), vec2f(-1.0), size));
+    if SHADOW_KIND == SHADOW_CUBE {
+        texel = clamp(texel, vec2i(0), vec2i(size) - 1);
+    }
+    return shadow_walk_next(ShadowWalk(c0, c1, texel, face, vec2f(0.0)));
+}
+
+fn shadow_walk_way(walk: ShadowWalk) -> vec2i {
+    return vec2i(sign(walk.c1.xy * walk.c0.w - walk.c0.xy * walk.c1.w));
+}
+
+fn shadow_walk_next(walk: ShadowWalk) -> ShadowWalk {
+    let size = vec2f(textureDimensions(shadow_map));
+    let way = shadow_walk_way(walk);
+    let border = vec2f(walk.texel + max(way, vec2i(0)));
+    let crossing = (border * walk.c0.w - walk.c0.xy) / (walk.c1.xy - border * walk.c1.w);
+    let is_border = (way != vec2i(0)) & (border >= vec2f(0.0)) & (border <= size);
+    var next = walk;
+    next.next = select(vec2f(1e30), crossing, is_border);
+    return next;
+}
+
+// Distance where the texel ends.
+fn shadow_walk_end(walk: ShadowWalk) -> f32 {
+    return min(walk.next.x, walk.next.y);
+}
+
+// Over the border at distance s.
+fn shadow_walk_on(map_ray: ShadowRay, walk: ShadowWalk, s: f32) -> ShadowWalk {
+    var on = walk;
+    on.texel += select(vec2i(0), shadow_walk_way(walk), walk.next <= vec2f(s));
+    on = shadow_walk_next(on);
+    if SHADOW_KIND == SHADOW_CUBE {
+        let size = vec2i(textureDimensions(shadow_map));
+        if any(on.texel < vec2i(0)) || any(on.texel >= size) {
+            return shadow_walk_from(map_ray, s * 1.00001 + 1e-6);
+        }
+    }
+    return on;
+}
+
+// Depth of the texel, 1 nearest to the light; 0 where it holds nothing or lies outside the map.
+fn shadow_walk_held(walk: ShadowWalk) -> f32 {
+    let size = vec2i(textureDimensions(shadow_map));
+    let held = textureLoad(shadow_map, clamp(walk.texel, vec2i(0), size - 1), walk.face, 0);
+    let outside = any(walk.texel < vec2i(0)) || any(walk.texel >= size);
+    return select(select(held, 1.0 - held, light.standard_depth == 1u), 0.0, outside);
+}
+
+// >= 0 where light reaches the ray's point at distance s past this depth.
+fn shadow_walk_margin(walk: ShadowWalk, held: f32, s: f32) -> f32 {
+    let zw = walk.c0.zw + s * walk.c1.zw;
+    return zw.x - held * zw.y;
+}

@@ -1,0 +1,162 @@
+// The shadow map rectified to slices, and a tree of (min, max) over each (Chen 2011, sections 3.2 and 3.3), in one go.
+//
+// A leaf is a cell of light rays, as wide as the slice: it holds the least and the greatest S of all of them, so that
+// a view ray anywhere in the slice that passes the test at a node is lit, or dark, all along it.
+// Two 16-bit numbers a node, rounded outwards: the minimum below, the maximum above.
+
+@group(2) @binding(0) var<uniform> min_max: MinMax;
+@group(2) @binding(1) var<uniform> pyramid: Pyramid;
+@group(2) @binding(2) var<storage, read> pyramid_texels: array<vec2f>;
+@group(2) @binding(3) var<storage, read_write> min_max_nodes: array<u32>;
+
+// Leaves a thread takes, and levels it builds of them.
+const RECTIFY_LEAVES: u32 = 8u;
+const RECTIFY_THREADS: u32 = 64u;
+
+var<workgroup> rectify_row: array<u32, RECTIFY_THREADS>;
+
+// What covers everything: no view ray passes the test.
+const RECTIFY_UNKNOWN: u32 = 0xffff0000u;
+// Lit for every view ray.
+const RECTIFY_LIT: u32 = 0xffffffffu;
+
+fn rectify_pack(range: vec2f) -> u32 {
+    // f32 errs by less than a twentieth of a step.
+    let q = clamp(vec2f(floor(range.x - 0.05), ceil(range.y + 0.05)), vec2f(0.0), vec2f(65535.0));
+    return u32(q.x) | (u32(q.y) << 16u);
+}
+
+fn rectify_unite(a: u32, b: u32) -> u32 {
+    return min(a & 0xffffu, b & 0xffffu) | max(a & 0xffff0000u, b & 0xffff0000u);
+}
+
+// Farthest and nearest depth of the texels from..to (inclusive) of a face.
+fn rectify_depths(first: vec2u, last: vec2u, face: u32) -> vec2f {
+    let extent = max(last.x - first.x, last.y - first.y);
+    // Two texels of this level a side hold them.
+    let k = clamp(firstLeadingBit(extent) + 1u, 1u, PYRAMID_LEVELS);
+    let level = pyramid.levels[k - 1u];
+    let a = min(first >> vec2u(k), level.yz - 1u);
+    let b = min(last >> vec2u(k), level.yz - 1u);
+    let start = level.x + face * level.w;
+    let top = start + a.y * level.y;
+    let bottom = start + b.y * level.y;
+    return pyramid_unite(
+        pyramid_unite(pyramid_texels[top + a.x], pyramid_texels[top + b.x]),
+        pyramid_unite(pyramid_texels[bottom + a.x], pyramid_texels[bottom + b.x]),
+    );
+}
+
+struct RectifySide {
+    gamma: f32,
+    first: ShadowLine,
+    second: ShadowLine,
+}
+
+fn rectify_side(outward: mat2x3f, alphas: vec2f, gamma: f32) -> RectifySide {
+    let e = min_max.epipolar;
+    let a = epipolar_light_ray(e, alphas.x, outward[0], gamma);
+    let b = epipolar_light_ray(e, alphas.y, outward[1], gamma);
+    return RectifySide(gamma, shadow_line(a.origin, a.way), shadow_line(b.origin, b.way));
+}
+
+fn rectify_cell(a: RectifySide, b: RectifySide) -> u32 {
+    let e = min_max.epipolar;
+    let size = vec2f(textureDimensions(shadow_map));
+    let lowest = min(min(a.first.texel, a.second.texel), min(b.first.texel, b.second.texel));
+    let highest = max(max(a.first.texel, a.second.texel), max(b.first.texel, b.second.texel));
+    // The cell's ends are arcs, which bulge beyond their chords.
+    let chord = max(distance(a.first.texel, a.second.texel), distance(b.first.texel, b.second.texel));
+    let margin = 0.02 + 0.25 * chord * min(abs(e.alpha_step), 1.0);
+    let low = floor(lowest - margin);
+    let high = floor(highest + margin);
+    let face = a.first.face;
+    let one_face = a.second.face == face && b.first.face == face && b.second.face == face;
+    if !one_face {
+        return RECTIFY_UNKNOWN;
+    }
+    if any(high < vec2f(0.0)) || any(low >= size) {
+        return RECTIFY_LIT;
+    }
+    let depths = rectify_depths(vec2u(max(low, vec2f(0.0))), vec2u(min(high, size - 1.0)), face);
+    if depths.y <= 0.0 {
+        return RECTIFY_LIT;
+    }
+    let near = vec4f(
+        shadow_line_end(a.first, depths.y),
+        shadow_line_end(a.second, depths.y),
+        shadow_line_end(b.first, depths.y),
+        shadow_line_end(b.second, depths.y),
+    );
+    let far = vec4f(
+        shadow_line_end(a.first, depths.x),
+        shadow_line_end(a.second, depths.x),
+        shadow_line_end(b.first, depths.x),
+        shadow_line_end(b.second, depths.x),
+    );
+    var ends = vec2f(min(min(near.x, near.y), min(near.z, near.w)), max(max(far.x, far.y), max(far.z, far.w)));
+    let beside_map = any(low < vec2f(0.0)) || any(high >= size);
+    if light_is_local() {
+        // Distance to a plane of constant depth is convex over the cell: its middle may be nearer than its corners.
+        let width = abs(b.gamma - a.gamma) + abs(e.alpha_step);
+        ends *= vec2f(1.0 - width * width, 1.0 + width * width);
+    }
+    if depths.x <= 0.0 || beside_map {
+        ends.y = 1e30;
+    }
+    return rectify_pack(epipolar_shadow_range(e, vec2f(a.gamma, b.gamma), ends));
+}
+
+@compute @workgroup_size(RECTIFY_THREADS)
+fn rectify(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
+    let e = min_max.epipolar;
+    let slice = group.y;
+    let first = RECTIFY_LEAVES * (RECTIFY_THREADS * group.x + thread);
+    var whole = RECTIFY_UNKNOWN;
+    if first < e.samples {
+        let alphas = e.alpha_start + e.alpha_step * vec2f(f32(slice), f32(slice + 1u));
+        let outward = mat2x3f(epipolar_outward(e, alphas.x), epipolar_outward(e, alphas.y));
+        var side = rectify_side(outward, alphas, e.gamma_start + f32(first) * e.gamma_step);
+        var quarter = 0u;
+        var half = 0u;
+        for (var i = 0u; i < RECTIFY_LEAVES; i += 2u) {
+            let middle = rectify_side(outward, alphas, e.gamma_start + f32(first + i + 1u) * e.gamma_step);
+            let next = rectify_side(outward, alphas, e.gamma_start + f32(first + i + 2u) * e.gamma_step);
+            let left = rectify_cell(side, middle);
+            let right = rectify_cell(middle, next);
+            side = next;
+            let pair = rectify_unite(left, right);
+            min_max_nodes[min_max_node(e, slice, 0u, first + i)] = left;
+            min_max_nodes[min_max_node(e, slice, 0u, first + i + 1u)] = right;
+            min_max_nodes[min_max_node(e, slice, 1u, (first + i) >> 1u)] = pair;
+            if (i & 2u) == 0u {
+                quarter = pair;
+            } else {
+                quarter = rectify_unite(quarter, pair);
+                min_max_nodes[min_max_node(e, slice, 2u, (first + i) >> 2u)] = quarter;
+                half = select(quarter, rectify_unite(half, quarter), i > 2u);
+            }
+        }
+        whole = half;
+        min_max_nodes[min_max_node(e, slice, 3u, first >> 3u)] = whole;
+    }
+    rectify_row[thread] = whole;
+    for (var level = 4u; level < MIN_MAX_LEVELS; level++) {
+        workgroupBarrier();
+        let stride = 1u << (level - 4u);
+        let at = 2u * stride * thread;
+        let is_mine = at + stride < RECTIFY_THREADS;
+        var node = 0u;
+        if is_mine {
+            node = rectify_unite(rectify_row[at], rectify_row[at + stride]);
+        }
+        workgroupBarrier();
+        if is_mine {
+            rectify_row[at] = node;
+            let index = (RECTIFY_THREADS * group.x * RECTIFY_LEAVES >> level) + thread;
+            if (index << level) < e.samples {
+                min_max_nodes[min_max_node(e, slice, level, index)] = node;
+            }
+        }
+    }
+}
