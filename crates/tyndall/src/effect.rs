@@ -290,7 +290,7 @@ impl Effect {
             | wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::COPY_SRC;
         let key = (None, ["in-scatter, even", "in-scatter, odd"][which]);
-        pool.texture(device, key, extent(size), self.shared.output, usage)
+        pool.texture(device, key, extent(size), 1, self.shared.output, usage)
             .create_view(&wgpu::TextureViewDescriptor::default())
     }
 }

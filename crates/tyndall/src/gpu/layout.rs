@@ -26,10 +26,21 @@ pub(crate) fn storage(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEnt
     entry(binding, buffer)
 }
 
-/// The airlight tables ([`AirlightPictures`](super::airlight::AirlightPictures)) at `binding`.
-pub(crate) fn airlight(binding: u32) -> wgpu::BindGroupLayoutEntry {
+/// A 2-D texture of floats at `binding` that is read texel by texel.
+pub(crate) fn texels(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    let texels = wgpu::TextureSampleType::Float { filterable: false };
+    texture(binding, texels, wgpu::TextureViewDimension::D2)
+}
+
+/// An array of 2-D textures of floats at `binding` that is read texel by texel.
+pub(crate) fn texel_layers(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let texels = wgpu::TextureSampleType::Float { filterable: false };
     texture(binding, texels, wgpu::TextureViewDimension::D2Array)
+}
+
+/// The airlight tables ([`AirlightPictures`](super::airlight::AirlightPictures)) at `binding`.
+pub(crate) fn airlight(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    texel_layers(binding)
 }
 
 fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {

@@ -12,8 +12,8 @@ pub(crate) struct Pass {
 pub(crate) enum Work {
     /// Dispatches, each of which sees what the ones before it wrote.
     Compute(Vec<Dispatch>),
-    /// A triangle over the whole of a picture, whose former content is lost.
-    FullScreen(FullScreen),
+    /// Triangles over the whole of a picture each, whose former content is lost.
+    FullScreen(Vec<FullScreen>),
 }
 
 /// One dispatch.
@@ -57,27 +57,50 @@ impl Pass {
                     pass.dispatch_workgroups(x, y, z);
                 }
             }
-            Work::FullScreen(draw) => {
-                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                    label: Some(&self.name),
-                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                        view: &draw.target,
-                        depth_slice: None,
-                        resolve_target: None,
-                        ops: wgpu::Operations {
-                            load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                            store: wgpu::StoreOp::Store,
-                        },
-                    })],
-                    timestamp_writes: timer.and_then(|t| t.render_pass(&self.name)),
-                    ..Default::default()
-                });
-                pass.set_pipeline(&draw.pipeline);
-                for (i, group) in draw.groups.iter().enumerate() {
-                    pass.set_bind_group(i as u32, group, &[]);
+            Work::FullScreen(draws) => {
+                let stamps = timer.and_then(|t| t.render_pass(&self.name));
+                for (i, draw) in draws.iter().enumerate() {
+                    let (first, last) = (i == 0, i + 1 == draws.len());
+                    let of_whole = stamps.clone().filter(|_| first || last);
+                    let stamps = of_whole.map(|s| wgpu::RenderPassTimestampWrites {
+                        beginning_of_pass_write_index: s
+                            .beginning_of_pass_write_index
+                            .filter(|_| first),
+                        end_of_pass_write_index: s.end_of_pass_write_index.filter(|_| last),
+                        ..s
+                    });
+                    draw.record(&self.name, encoder, stamps);
                 }
-                pass.draw(0..3, 0..1);
             }
         }
+    }
+}
+
+impl FullScreen {
+    fn record(
+        &self,
+        name: &str,
+        encoder: &mut wgpu::CommandEncoder,
+        timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(name),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            timestamp_writes,
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        for (i, group) in self.groups.iter().enumerate() {
+            pass.set_bind_group(i as u32, group, &[]);
+        }
+        pass.draw(0..3, 0..1);
     }
 }

@@ -64,11 +64,16 @@ impl Pool {
         device: &wgpu::Device,
         key: Key,
         size: wgpu::Extent3d,
+        levels: u32,
         format: wgpu::TextureFormat,
         usage: wgpu::TextureUsages,
     ) -> wgpu::Texture {
-        let fits =
-            |t: &wgpu::Texture| t.size() == size && t.format() == format && t.usage() == usage;
+        let fits = |t: &wgpu::Texture| {
+            t.size() == size
+                && t.mip_level_count() == levels
+                && t.format() == format
+                && t.usage() == usage
+        };
         if let Some(Resource::Texture(texture)) = self.find(key)
             && fits(texture)
         {
@@ -77,7 +82,7 @@ impl Pool {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some(key.1),
             size,
-            mip_level_count: 1,
+            mip_level_count: levels,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
@@ -108,11 +113,12 @@ impl Pool {
             Resource::Buffer(buffer) => buffer.size(),
             Resource::Texture(texture) => {
                 let texel = texture.format().block_copy_size(None).unwrap_or(0);
-                let size = texture.size();
-                u64::from(size.width)
-                    * u64::from(size.height)
-                    * u64::from(size.depth_or_array_layers)
-                    * u64::from(texel)
+                let level = |k: u32| {
+                    let [w, h] = [texture.width(), texture.height()].map(|n| (n >> k).max(1));
+                    u64::from(w) * u64::from(h)
+                };
+                let texels: u64 = (0..texture.mip_level_count()).map(level).sum();
+                texels * u64::from(texture.depth_or_array_layers()) * u64::from(texel)
             }
         };
         self.held.values().map(bytes).sum()

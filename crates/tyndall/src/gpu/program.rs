@@ -56,6 +56,8 @@ pub(crate) struct Recipe {
     own: wgpu::BindGroupLayout,
     /// What a full-screen pass writes.
     target: wgpu::TextureFormat,
+    /// Overrides besides the light's.
+    constants: Vec<(&'static str, f64)>,
 }
 
 /// A kind of pipeline.
@@ -135,11 +137,24 @@ impl<P: Pipeline> Program<P> {
             }),
             own,
             target: shared.output,
+            constants: Vec::new(),
         };
         Self {
             recipe,
             made: Mutex::default(),
         }
+    }
+
+    /// The same, but full-screen passes write this format.
+    pub(crate) fn writing(mut self, format: wgpu::TextureFormat) -> Self {
+        self.recipe.target = format;
+        self
+    }
+
+    /// The same with another override.
+    pub(crate) fn with(mut self, name: &'static str, value: f64) -> Self {
+        self.recipe.constants.push((name, value));
+        self
     }
 
     /// Bind group 2 of these resources, at bindings 0, 1 and so on.
@@ -162,7 +177,11 @@ impl<P: Pipeline> Program<P> {
     /// The pipeline for this kind of light.
     pub(crate) fn get(&self, device: &wgpu::Device, variant: LightVariant) -> P {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        let make = || P::make(device, &self.recipe, &variant.constants());
+        let make = || {
+            let mut constants = variant.constants().to_vec();
+            constants.extend(&self.recipe.constants);
+            P::make(device, &self.recipe, &constants)
+        };
         made.entry(variant).or_insert_with(make).clone()
     }
 }

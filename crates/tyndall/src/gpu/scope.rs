@@ -90,6 +90,20 @@ impl LightScope<'_> {
             .buffer(self.device, (Some(self.index), name), bytes, usage)
     }
 
+    /// A texture of this light.
+    pub(crate) fn texture(
+        &mut self,
+        name: &'static str,
+        size: wgpu::Extent3d,
+        levels: u32,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        let key = (Some(self.index), name);
+        self.pool
+            .texture(self.device, key, size, levels, format, usage)
+    }
+
     /// A pass of one dispatch over the frame, the light and `resources`.
     pub(crate) fn compute(
         &self,
@@ -125,11 +139,21 @@ impl LightScope<'_> {
     ) -> Pass {
         Pass {
             name: self.pass_name(name),
-            work: Work::FullScreen(FullScreen {
-                pipeline: program.get(self.device, self.variant),
-                groups: self.groups(program.bind(self.device, resources)),
-                target: self.target.clone(),
-            }),
+            work: Work::FullScreen(vec![self.draw(program, resources, self.target.clone())]),
+        }
+    }
+
+    /// One full-screen draw over the frame, the light and `resources`.
+    pub(crate) fn draw(
+        &self,
+        program: &ScreenProgram,
+        resources: &[wgpu::BindingResource<'_>],
+        target: wgpu::TextureView,
+    ) -> FullScreen {
+        FullScreen {
+            pipeline: program.get(self.device, self.variant),
+            groups: self.groups(program.bind(self.device, resources)),
+            target,
         }
     }
 

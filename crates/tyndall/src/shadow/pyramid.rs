@@ -1,108 +1,105 @@
 //! Nearest and farthest depth over squares of a shadow map's texels, on the GPU: `pyramid.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
-
 use crate::gpu::{
     layout,
-    pass::Pass,
-    program::ComputeProgram,
+    pass::{Pass, Work},
+    program::ScreenProgram,
     scope::{LightScope, Shared},
 };
 
 /// What a shader needs that reads a pyramid.
 pub(crate) const PYRAMID: &str = include_str!("pyramid.wgsl");
-const REDUCE: &str = include_str!("pyramid_reduce.wgsl");
+const BUILD: &str = include_str!("pyramid_build.wgsl");
 
-/// Levels, from 2 x 2 texels on.
-const LEVELS: usize = 12;
-/// Levels a dispatch makes.
-const LEVELS_A_DISPATCH: u32 = 6;
-/// Texels a side of the level it reads that a workgroup takes.
-const TILE: u32 = 64;
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
-/// `Pyramid` of `pyramid.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct PyramidUniform {
-    pub(crate) levels: [[u32; 4]; LEVELS],
-    pub(crate) faces: u32,
-    pub(crate) first: u32,
-    pad: [u32; 2],
+/// The shaders that build one: its first level, and any other.
+pub(crate) struct Programs {
+    first: ScreenProgram,
+    next: ScreenProgram,
 }
 
-impl PyramidUniform {
-    /// Of a map of so many texels and faces.
-    pub(crate) fn new([width, height]: [u32; 2], faces: u32) -> Self {
-        let mut first = 0;
-        let levels = std::array::from_fn(|i| {
-            let [w, h] = [width, height].map(|n| n.div_ceil(2 << i));
-            let level = [first, w, h, w * h];
-            first += faces * w * h;
-            level
-        });
+impl Programs {
+    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let own = [layout::uniform::<[u32; 4]>(0), layout::texels(1)];
+        let program = |first: bool| {
+            ScreenProgram::new(
+                device,
+                shared,
+                "pyramid",
+                &[PYRAMID, BUILD],
+                "pyramid_build",
+                &own,
+            )
+            .writing(FORMAT)
+            .with("PYRAMID_FIRST", f64::from(u8::from(first)))
+        };
         Self {
-            levels,
-            faces,
-            first: 0,
-            pad: [0; 2],
+            first: program(true),
+            next: program(false),
         }
     }
-
-    /// Bytes of its texels.
-    pub(crate) fn bytes(&self) -> u64 {
-        let [first, w, h, _] = self.levels[LEVELS - 1];
-        (u64::from(first) + u64::from(w * h * self.faces)) * 8
-    }
 }
 
-/// A pyramid on the GPU.
-pub(crate) struct Pyramid {
-    pub(crate) uniform: wgpu::Buffer,
-    pub(crate) texels: wgpu::Buffer,
-}
-
-/// The shader that builds one.
-pub(crate) fn program(device: &wgpu::Device, shared: &Shared) -> ComputeProgram {
-    let own = [
-        layout::uniform::<PyramidUniform>(0),
-        layout::storage(1, false),
-    ];
-    ComputeProgram::new(
-        device,
-        shared,
-        "pyramid",
-        &[PYRAMID, REDUCE],
-        "pyramid_reduce",
-        &own,
-    )
-}
-
-/// The pyramid of a light's shadow map, and the pass that builds it.
+/// The pyramid of a light's shadow map, as an array of faces, and the pass that builds it.
 pub(crate) fn build(
-    program: &ComputeProgram,
+    programs: &Programs,
     scope: &mut LightScope<'_>,
     map: &wgpu::Texture,
-) -> (Pyramid, Pass) {
-    let size = [map.width(), map.height()];
-    let fine = PyramidUniform::new(size, map.depth_or_array_layers());
-    let coarse = PyramidUniform {
-        first: LEVELS_A_DISPATCH,
-        ..fine
+) -> (wgpu::TextureView, Pass) {
+    // Powers of two are halved without a rest; what lies beyond the map repeats its border.
+    let half = |n: u32| (n.next_power_of_two() / 2).max(1);
+    let size = wgpu::Extent3d {
+        width: half(map.width()),
+        height: half(map.height()),
+        depth_or_array_layers: map.depth_or_array_layers(),
     };
-    let texels = scope.storage("pyramid texels", fine.bytes());
-    let uniforms = [
-        scope.uniform("pyramid fine", &fine),
-        scope.uniform("pyramid coarse", &coarse),
-    ];
-    let dispatches = [&fine, &coarse]
-        .into_iter()
-        .zip(&uniforms)
-        .map(|(level, uniform)| {
-            let [x, y] = size.map(|n| n.div_ceil(TILE << level.first));
-            let resources = [uniform.as_entire_binding(), texels.as_entire_binding()];
-            scope.dispatch(program, &resources, [x, y, level.faces])
-        });
-    let pass = Pass::compute(scope.pass_name("shadow map pyramid"), dispatches.collect());
-    let [uniform, _] = uniforms;
-    (Pyramid { uniform, texels }, pass)
+    let levels = size.width.max(size.height).ilog2() + 1;
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+    let texture = scope.texture("shadow map pyramid", size, levels, FORMAT, usage);
+    let mut draws = Vec::new();
+    for layer in 0..size.depth_or_array_layers {
+        let face = scope.uniform(FACES[layer as usize], &[layer, 0, 0, 0]);
+        let mut above = scope.shared.absent.light.clone();
+        for level in 0..levels {
+            let target = texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_mip_level: level,
+                mip_level_count: Some(1),
+                base_array_layer: layer,
+                array_layer_count: Some(1),
+                ..Default::default()
+            });
+            let program = if level == 0 {
+                &programs.first
+            } else {
+                &programs.next
+            };
+            let resources = [
+                face.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&above),
+            ];
+            draws.push(scope.draw(program, &resources, target.clone()));
+            above = target;
+        }
+    }
+    let whole = texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    });
+    let pass = Pass {
+        name: scope.pass_name("shadow map pyramid"),
+        work: Work::FullScreen(draws),
+    };
+    (whole, pass)
 }
+
+/// Names of the uniforms that say which face is drawn.
+const FACES: [&str; 6] = [
+    "pyramid face 0",
+    "pyramid face 1",
+    "pyramid face 2",
+    "pyramid face 3",
+    "pyramid face 4",
+    "pyramid face 5",
+];

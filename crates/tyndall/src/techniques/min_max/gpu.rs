@@ -21,7 +21,7 @@ use crate::{
     physics::medium::reals,
     shadow::{
         self,
-        pyramid::{self, PYRAMID, PyramidUniform},
+        pyramid::{self, PYRAMID},
     },
 };
 
@@ -42,7 +42,7 @@ pub(crate) struct MinMaxUniform {
 
 /// The technique's shaders.
 pub(crate) struct Programs {
-    pyramid: ComputeProgram,
+    pyramid: pyramid::Programs,
     rectify: ComputeProgram,
     traverse: ScreenProgram,
 }
@@ -50,7 +50,7 @@ pub(crate) struct Programs {
 impl Programs {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         Self {
-            pyramid: pyramid::program(device, shared),
+            pyramid: pyramid::Programs::new(device, shared),
             rectify: ComputeProgram::new(
                 device,
                 shared,
@@ -59,9 +59,8 @@ impl Programs {
                 "rectify",
                 &[
                     layout::uniform::<MinMaxUniform>(0),
-                    layout::uniform::<PyramidUniform>(1),
-                    layout::storage(2, true),
-                    layout::storage(3, false),
+                    layout::texel_layers(1),
+                    layout::storage(2, false),
                 ],
             ),
             traverse: ScreenProgram::new(
@@ -98,8 +97,7 @@ pub(crate) fn passes(
         passes.push(pass);
         let resources = [
             uniform.as_entire_binding(),
-            pyramid.uniform.as_entire_binding(),
-            pyramid.texels.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&pyramid),
             nodes.as_entire_binding(),
         ];
         let groups = [

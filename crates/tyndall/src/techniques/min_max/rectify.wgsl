@@ -5,15 +5,15 @@
 // Two 16-bit numbers a node, rounded outwards: the minimum below, the maximum above.
 
 @group(2) @binding(0) var<uniform> min_max: MinMax;
-@group(2) @binding(1) var<uniform> pyramid: Pyramid;
-@group(2) @binding(2) var<storage, read> pyramid_texels: array<vec2f>;
-@group(2) @binding(3) var<storage, read_write> min_max_nodes: array<u32>;
+@group(2) @binding(1) var pyramid: texture_2d_array<f32>;
+@group(2) @binding(2) var<storage, read_write> min_max_nodes: array<u32>;
 
 // Leaves a thread takes, and levels it builds of them.
 const RECTIFY_LEAVES: u32 = 8u;
 const RECTIFY_THREADS: u32 = 64u;
 
 var<workgroup> rectify_row: array<u32, RECTIFY_THREADS>;
+var<workgroup> rectify_largest: atomic<u32>;
 
 // What covers everything: no view ray passes the test.
 const RECTIFY_UNKNOWN: u32 = 0xffff0000u;
@@ -30,21 +30,23 @@ fn rectify_unite(a: u32, b: u32) -> u32 {
     return min(a & 0xffffu, b & 0xffffu) | max(a & 0xffff0000u, b & 0xffff0000u);
 }
 
-// Farthest and nearest depth of the texels from..to (inclusive) of a face.
-fn rectify_depths(first: vec2u, last: vec2u, face: u32) -> vec2f {
-    let extent = max(last.x - first.x, last.y - first.y);
-    // Two texels of this level a side hold them.
-    let k = clamp(firstLeadingBit(extent) + 1u, 1u, PYRAMID_LEVELS);
-    let level = pyramid.levels[k - 1u];
-    let a = min(first >> vec2u(k), level.yz - 1u);
-    let b = min(last >> vec2u(k), level.yz - 1u);
-    let start = level.x + face * level.w;
-    let top = start + a.y * level.y;
-    let bottom = start + b.y * level.y;
-    return pyramid_unite(
-        pyramid_unite(pyramid_texels[top + a.x], pyramid_texels[top + b.x]),
-        pyramid_unite(pyramid_texels[bottom + a.x], pyramid_texels[bottom + b.x]),
-    );
+// Farthest and nearest depth of the texels first..last (inclusive) of a face, read in squares of a level.
+fn rectify_depths(first: vec2u, last: vec2u, face: u32, level: u32) -> vec2f {
+    let size = textureDimensions(pyramid, level);
+    let a = min(first >> vec2u(level + 1u), size - 1u);
+    let b = min(last >> vec2u(level + 1u), size - 1u);
+    var range = vec2f(1e30, -1e30);
+    for (var y = a.y; y <= b.y; y++) {
+        for (var x = a.x; x <= b.x; x++) {
+            range = pyramid_unite(range, textureLoad(pyramid, vec2u(x, y), face, level).rg);
+        }
+    }
+    return range;
+}
+
+// The level of which two squares a side hold a cell of this many texels.
+fn rectify_level(texels: u32) -> u32 {
+    return min(firstLeadingBit(max(texels, 1u)), textureNumLevels(pyramid) - 1u);
 }
 
 struct RectifySide {
@@ -60,7 +62,7 @@ fn rectify_side(outward: mat2x3f, alphas: vec2f, gamma: f32) -> RectifySide {
     return RectifySide(gamma, shadow_line(a.origin, a.way), shadow_line(b.origin, b.way));
 }
 
-fn rectify_cell(a: RectifySide, b: RectifySide) -> u32 {
+fn rectify_cell(a: RectifySide, b: RectifySide, level: u32) -> u32 {
     let e = min_max.epipolar;
     let size = vec2f(textureDimensions(shadow_map));
     let lowest = min(min(a.first.texel, a.second.texel), min(b.first.texel, b.second.texel));
@@ -72,13 +74,15 @@ fn rectify_cell(a: RectifySide, b: RectifySide) -> u32 {
     let high = floor(highest + margin);
     let face = a.first.face;
     let one_face = a.second.face == face && b.first.face == face && b.second.face == face;
-    if !one_face {
+    // Beyond a few squares a cell is not worth its reads: behind the light it may stretch over the whole map.
+    let squares = (high - low) / f32(2u << level);
+    if !one_face || any(squares > vec2f(8.0)) {
         return RECTIFY_UNKNOWN;
     }
     if any(high < vec2f(0.0)) || any(low >= size) {
         return RECTIFY_LIT;
     }
-    let depths = rectify_depths(vec2u(max(low, vec2f(0.0))), vec2u(min(high, size - 1.0)), face);
+    let depths = rectify_depths(vec2u(max(low, vec2f(0.0))), vec2u(min(high, size - 1.0)), face, level);
     if depths.y <= 0.0 {
         return RECTIFY_LIT;
     }
@@ -112,18 +116,28 @@ fn rectify(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let e = min_max.epipolar;
     let slice = group.y;
     let first = RECTIFY_LEAVES * (RECTIFY_THREADS * group.x + thread);
+    let alphas = e.alpha_start + e.alpha_step * vec2f(f32(slice), f32(slice + 1u));
+    let outward = mat2x3f(epipolar_outward(e, alphas.x), epipolar_outward(e, alphas.y));
+    var side = rectify_side(outward, alphas, e.gamma_start + f32(first) * e.gamma_step);
+    // One level for all: cells differ little, and not every driver takes a level of each thread's own.
+    let middle = e.gamma_start + (f32(first) + 0.5 * f32(RECTIFY_LEAVES)) * e.gamma_step;
+    let one_on = rectify_side(outward, alphas, middle + e.gamma_step);
+    let here = rectify_side(outward, alphas, middle);
+    if first < e.samples && here.first.face == one_on.second.face {
+        let across = max(abs(one_on.first.texel - here.second.texel), abs(one_on.second.texel - here.first.texel));
+        atomicMax(&rectify_largest, u32(min(max(across.x, across.y), 16384.0)));
+    }
+    workgroupBarrier();
+    let level = rectify_level(workgroupUniformLoad(&rectify_largest));
     var whole = RECTIFY_UNKNOWN;
     if first < e.samples {
-        let alphas = e.alpha_start + e.alpha_step * vec2f(f32(slice), f32(slice + 1u));
-        let outward = mat2x3f(epipolar_outward(e, alphas.x), epipolar_outward(e, alphas.y));
-        var side = rectify_side(outward, alphas, e.gamma_start + f32(first) * e.gamma_step);
         var quarter = 0u;
         var half = 0u;
         for (var i = 0u; i < RECTIFY_LEAVES; i += 2u) {
             let middle = rectify_side(outward, alphas, e.gamma_start + f32(first + i + 1u) * e.gamma_step);
             let next = rectify_side(outward, alphas, e.gamma_start + f32(first + i + 2u) * e.gamma_step);
-            let left = rectify_cell(side, middle);
-            let right = rectify_cell(middle, next);
+            let left = rectify_cell(side, middle, level);
+            let right = rectify_cell(middle, next, level);
             side = next;
             let pair = rectify_unite(left, right);
             min_max_nodes[min_max_node(e, slice, 0u, first + i)] = left;

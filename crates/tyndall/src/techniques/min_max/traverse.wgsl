@@ -109,9 +109,26 @@ fn traverse_light(ray: Ray) -> vec3f {
                 break;
             }
         }
-        sum += stretch_plain(ray, lit_from, select(lit_from, event, changes && lit));
+        sum += traverse_stretch(ray, lit_from, select(lit_from, event, changes && lit));
         lit_from = select(lit_from, event, changes);
         lit = lit != changes;
     }
-    return sum + stretch_plain(ray, lit_from, select(lit_from, span.y, lit));
+    sum += traverse_stretch(ray, lit_from, select(lit_from, span.y, lit));
+    return sum * traverse_common(ray);
+}
+
+// The light of a lit stretch, but for the common factor.
+fn traverse_stretch(ray: Ray, a: f32, b: f32) -> vec3f {
+    if light_is_local() {
+        return stretch_plain(ray, a, b);
+    }
+    return transmittance_integral(frame.medium.sigma_t, a, b);
+}
+
+// The factor that all stretches of a ray share.
+fn traverse_common(ray: Ray) -> vec3f {
+    if light_is_local() {
+        return vec3f(1.0);
+    }
+    return medium_scattering(-dot(light.direction, ray.direction)) * light.color;
 }
