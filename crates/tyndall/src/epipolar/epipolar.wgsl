@@ -15,12 +15,15 @@ struct Epipolar {
     samples: u32, // a power of two
     least_off_axis: f32, // of the rays that slices are for, see EpipolarRay
     cotangent: f32, // orthographic and sun: of the view rays' angle to the axis
+    tint_start: f32, // gamma of the columns of tints
+    tint_step: f32,
+    turns: u32, // 1 where the slices are a whole turn
 }
 
 // A view ray in its slice: gamma of its point at distance s is c.x + s c.y (sun), or the angle of
 // (t.x - s t.y, c.x + s c.y), the point seen from the light (local).
 struct EpipolarRay {
-    slice: u32,
+    place: f32, // among the slices; slice i from i to i + 1
     b: f32, // as stored
     off_axis: f32, // sine of the angle to the axis; orthographic and local: distance from it [m]
     c: vec2f,
@@ -47,7 +50,7 @@ fn epipolar_ray(e: Epipolar, ray: Ray) -> EpipolarRay {
         let sine = length(x);
         let cosine = dot(ray.direction, e.axis);
         return EpipolarRay(
-            epipolar_slice(e, atan2(x.y, x.x)),
+            epipolar_place(e, atan2(x.y, x.x)),
             (epipolar_angle(sine, cosine) - e.b_start) * e.b_scale,
             sine,
             vec2f(0.0, sine),
@@ -59,7 +62,7 @@ fn epipolar_ray(e: Epipolar, ray: Ray) -> EpipolarRay {
         let x = vec2f(dot(offset, e.across_x), dot(offset, e.across_y));
         let height = length(x);
         return EpipolarRay(
-            epipolar_slice(e, atan2(x.y, x.x)),
+            epipolar_place(e, atan2(x.y, x.x)),
             (height - e.b_start) * e.b_scale,
             height,
             vec2f(height, 0.0),
@@ -70,7 +73,7 @@ fn epipolar_ray(e: Epipolar, ray: Ray) -> EpipolarRay {
     let b = gamma * e.cotangent - dot(ray.origin, e.axis);
     let sine = dot(ray.direction, e.across_x);
     return EpipolarRay(
-        epipolar_slice(e, dot(ray.origin, e.across_y)),
+        epipolar_place(e, dot(ray.origin, e.across_y)),
         (b - e.b_start) * e.b_scale,
         sine,
         vec2f(gamma, sine),
@@ -78,7 +81,7 @@ fn epipolar_ray(e: Epipolar, ray: Ray) -> EpipolarRay {
     );
 }
 
-fn epipolar_slice(e: Epipolar, alpha: f32) -> u32 {
+fn epipolar_place(e: Epipolar, alpha: f32) -> f32 {
     var place = (alpha - e.alpha_start) / e.alpha_step;
     if light_is_local() || !epipolar_is_orthographic() {
         // A turn further where alpha lies before the first slice.
@@ -87,7 +90,11 @@ fn epipolar_slice(e: Epipolar, alpha: f32) -> u32 {
         // Rounding may take the last slice's end for a turn before its start.
         place = select(place, 0.0, place > 0.5 * (f32(e.slices) + turn));
     }
-    return u32(clamp(place, 0.0, f32(e.slices) - 1.0));
+    return clamp(place, 0.0, f32(e.slices));
+}
+
+fn epipolar_slice(e: Epipolar, r: EpipolarRay) -> u32 {
+    return min(u32(r.place), e.slices - 1u);
 }
 
 // gamma of the view ray's point at distance s.

@@ -23,6 +23,10 @@ pub(crate) struct EpipolarUniform {
     pub(crate) samples: u32,
     pub(crate) least_off_axis: f32,
     pub(crate) cotangent: f32,
+    pub(crate) tint_start: f32,
+    pub(crate) tint_step: f32,
+    pub(crate) turns: u32,
+    pub(crate) pad: u32,
 }
 
 impl EpipolarUniform {
@@ -42,5 +46,9 @@ impl EpipolarUniform {
         samples: 1,
         least_off_axis: f32::MAX,
         cotangent: 0.0,
+        tint_start: 0.0,
+        tint_step: 1.0,
+        turns: 0,
+        pad: 0,
     };
 }

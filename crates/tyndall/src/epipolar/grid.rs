@@ -28,6 +28,9 @@ use crate::{
 /// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
 const DEFAULT_SLICES: usize = 1024;
 
+/// Columns of tints a slice: `TINT_COLUMNS` of `tint.wgsl`.
+pub(crate) const TINT_COLUMNS: f64 = 1024.0;
+
 /// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".
 const STEPS: f64 = 65533.0;
 
@@ -50,6 +53,8 @@ pub(crate) struct EpipolarGrid {
     b_start: f64,
     b_scale: f64,
     least_off_axis: f64,
+    /// Range of gamma over which tints are summed.
+    tint_range: [f64; 2],
 }
 
 /// What of the scene a grid covers.
@@ -60,7 +65,7 @@ pub(crate) struct GridScene<'a> {
     pub(crate) light: LightSource,
     /// The way a spot shines, and the angle of its cone [rad].
     pub(crate) cone: Option<(DVec3, f64)>,
-    /// The light's shadow map; none: nothing casts shadows.
+    /// The light's shadow map; none: nothing casts shadows, and only tints need slices.
     pub(crate) faces: &'a [Face],
     /// Texels of the shadow map, or of one of its faces, a side.
     pub(crate) side: usize,
@@ -86,12 +91,9 @@ pub(crate) fn angle_scale(across: f64, along: f64) -> f64 {
 }
 
 impl EpipolarGrid {
-    /// `None` where there are no slices, and every ray is to be walked: the eye is at the light, the view runs along the
-    /// sun, or nothing casts shadows.
+    /// `None` where there are no slices, and every ray is to be walked: the eye is at the light, or the view runs along
+    /// the sun.
     pub(crate) fn new(scene: &GridScene<'_>, resolution: &Resolution) -> Option<Self> {
-        if scene.faces.is_empty() {
-            return None;
-        }
         let camera = scene.camera;
         let orthographic = !camera.is_perspective();
         let (axis, across, local) = match scene.light {
@@ -139,8 +141,14 @@ impl EpipolarGrid {
             b_start: 0.0,
             b_scale: 1.0,
             least_off_axis: resolution.epipole_radius * pixel,
+            tint_range: [0.0, 1.0],
         };
         grid.slices = grid.choose_slices(scene, resolution);
+        let seen = match local {
+            Some(_) => grid.gammas_in_cone(scene.cone),
+            None => grid.gammas_seen(scene),
+        };
+        grid.tint_range = seen;
         let [start, end] = grid.gamma_range(scene);
         grid.gamma_start = start;
         grid.gamma_step = (end - start) / grid.samples as f64;
@@ -170,6 +178,10 @@ impl EpipolarGrid {
             samples: self.samples as u32,
             least_off_axis: self.least_off_axis as f32,
             cotangent: self.cotangent as f32,
+            tint_start: self.tint_range[0] as f32,
+            tint_step: ((self.tint_range[1] - self.tint_range[0]) / TINT_COLUMNS) as f32,
+            turns: u32::from(self.slices.is_whole_turn()),
+            pad: 0,
         }
     }
 
@@ -274,7 +286,10 @@ impl EpipolarGrid {
         let seen = self.gammas_seen(scene);
         let covered = match self.local {
             Some(_) => self.gammas_in_cone(scene.cone),
-            None => self.gammas_of_map(&scene.faces[0]),
+            None => scene
+                .faces
+                .first()
+                .map_or(seen, |face| self.gammas_of_map(face)),
         };
         [seen[0].max(covered[0]), seen[1].min(covered[1])]
     }

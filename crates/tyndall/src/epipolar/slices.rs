@@ -85,6 +85,11 @@ impl Slices {
         [self.first - 0.5 * self.step, self.step]
     }
 
+    /// True where the last slice is a neighbour of the first.
+    pub(crate) fn is_whole_turn(&self) -> bool {
+        self.turns && (self.step * self.count as f64 - TAU).abs() < 1e-9
+    }
+
     /// alpha of a slice.
     pub(crate) fn alpha(&self, slice: usize) -> f64 {
         self.first + slice as f64 * self.step

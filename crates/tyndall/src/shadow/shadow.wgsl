@@ -118,16 +118,21 @@ fn shadow_tint(p: vec4f) -> vec3f {
     return shadow_glass_tint(place);
 }
 
+// A tint, from three 10-bit square roots.
+fn shadow_glass_unpack(roots: u32) -> vec3f {
+    let root = vec3f(vec3u(roots, roots >> 10u, roots >> 20u) & vec3u(1023u)) / 1023.0;
+    return root * root;
+}
+
 // The product of the tints of the glass between a point and the light. A texel of a layer: depth as the bits of an
-// f32, and three 10-bit square roots.
+// f32, and a tint.
 fn shadow_glass_tint(place: ShadowPoint) -> vec3f {
     let texel = vec2u(place.uv * vec2f(textureDimensions(shadow_glass)));
     var tint = vec3f(1.0);
     for (var layer = 0u; layer < light.glass_layers; layer++) {
         let glass = textureLoad(shadow_glass, texel, place.face * light.glass_layers + layer, 0).xy;
         if !shadow_reaches(place.depth, bitcast<f32>(glass.x)) {
-            let root = vec3f(vec3u(glass.y, glass.y >> 10u, glass.y >> 20u) & vec3u(1023u)) / 1023.0;
-            tint *= root * root;
+            tint *= shadow_glass_unpack(glass.y);
         }
     }
     return tint;

@@ -2,9 +2,8 @@
 //
 // A leaf is a cell of light rays, as wide as the slice: it holds the least and the greatest S of all of them, so that
 // a view ray anywhere in the slice that passes the test at a node is lit, or dark, all along it.
-// Two 16-bit numbers a node, rounded outwards: the minimum below, the maximum above.
 
-@group(2) @binding(0) var<uniform> min_max: MinMax;
+@group(2) @binding(0) var<uniform> epipolar: Epipolar;
 @group(2) @binding(1) var pyramid: texture_2d_array<f32>;
 @group(2) @binding(2) var<storage, read_write> min_max_nodes: array<u32>;
 
@@ -12,23 +11,12 @@
 const RECTIFY_LEAVES: u32 = 8u;
 const RECTIFY_THREADS: u32 = 64u;
 
-var<workgroup> rectify_row: array<u32, RECTIFY_THREADS>;
 var<workgroup> rectify_largest: atomic<u32>;
 
 // What covers everything: no view ray passes the test.
 const RECTIFY_UNKNOWN: u32 = 0xffff0000u;
 // Lit for every view ray.
 const RECTIFY_LIT: u32 = 0xffffffffu;
-
-fn rectify_pack(range: vec2f) -> u32 {
-    // f32 errs by less than a twentieth of a step.
-    let q = clamp(vec2f(floor(range.x - 0.05), ceil(range.y + 0.05)), vec2f(0.0), vec2f(65535.0));
-    return u32(q.x) | (u32(q.y) << 16u);
-}
-
-fn rectify_unite(a: u32, b: u32) -> u32 {
-    return min(a & 0xffffu, b & 0xffffu) | max(a & 0xffff0000u, b & 0xffff0000u);
-}
 
 // Farthest and nearest depth of the texels first..last (inclusive) of a face, read in squares of a level.
 fn rectify_depths(first: vec2u, last: vec2u, face: u32, level: u32) -> vec2f {
@@ -56,14 +44,14 @@ struct RectifySide {
 }
 
 fn rectify_side(outward: mat2x3f, alphas: vec2f, gamma: f32) -> RectifySide {
-    let e = min_max.epipolar;
+    let e = epipolar;
     let a = epipolar_light_ray(e, alphas.x, outward[0], gamma);
     let b = epipolar_light_ray(e, alphas.y, outward[1], gamma);
     return RectifySide(gamma, shadow_line(a.origin, a.way), shadow_line(b.origin, b.way));
 }
 
 fn rectify_cell(a: RectifySide, b: RectifySide, level: u32) -> u32 {
-    let e = min_max.epipolar;
+    let e = epipolar;
     let size = vec2f(textureDimensions(shadow_map));
     let lowest = min(min(a.first.texel, a.second.texel), min(b.first.texel, b.second.texel));
     let highest = max(max(a.first.texel, a.second.texel), max(b.first.texel, b.second.texel));
@@ -108,12 +96,12 @@ fn rectify_cell(a: RectifySide, b: RectifySide, level: u32) -> u32 {
     if depths.x <= 0.0 || beside_map {
         ends.y = 1e30;
     }
-    return rectify_pack(epipolar_shadow_range(e, vec2f(a.gamma, b.gamma), ends));
+    return tree_pack(epipolar_shadow_range(e, vec2f(a.gamma, b.gamma), ends));
 }
 
 @compute @workgroup_size(RECTIFY_THREADS)
 fn rectify(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
-    let e = min_max.epipolar;
+    let e = epipolar;
     let slice = group.y;
     let first = RECTIFY_LEAVES * (RECTIFY_THREADS * group.x + thread);
     let alphas = e.alpha_start + e.alpha_step * vec2f(f32(slice), f32(slice + 1u));
@@ -129,48 +117,21 @@ fn rectify(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     }
     workgroupBarrier();
     let level = rectify_level(workgroupUniformLoad(&rectify_largest));
-    var whole = RECTIFY_UNKNOWN;
     if first < e.samples {
-        var quarter = 0u;
-        var half = 0u;
-        for (var i = 0u; i < RECTIFY_LEAVES; i += 2u) {
-            let middle = rectify_side(outward, alphas, e.gamma_start + f32(first + i + 1u) * e.gamma_step);
-            let next = rectify_side(outward, alphas, e.gamma_start + f32(first + i + 2u) * e.gamma_step);
-            let left = rectify_cell(side, middle, level);
-            let right = rectify_cell(middle, next, level);
+        for (var i = 0u; i < RECTIFY_LEAVES; i++) {
+            let next = rectify_side(outward, alphas, e.gamma_start + f32(first + i + 1u) * e.gamma_step);
+            min_max_nodes[tree_node(e.samples, slice, 0u, first + i)] = rectify_cell(side, next, level);
             side = next;
-            let pair = rectify_unite(left, right);
-            min_max_nodes[min_max_node(e, slice, 0u, first + i)] = left;
-            min_max_nodes[min_max_node(e, slice, 0u, first + i + 1u)] = right;
-            min_max_nodes[min_max_node(e, slice, 1u, (first + i) >> 1u)] = pair;
-            if (i & 2u) == 0u {
-                quarter = pair;
-            } else {
-                quarter = rectify_unite(quarter, pair);
-                min_max_nodes[min_max_node(e, slice, 2u, (first + i) >> 2u)] = quarter;
-                half = select(quarter, rectify_unite(half, quarter), i > 2u);
-            }
         }
-        whole = half;
-        min_max_nodes[min_max_node(e, slice, 3u, first >> 3u)] = whole;
     }
-    rectify_row[thread] = whole;
-    for (var level = 4u; level < MIN_MAX_LEVELS; level++) {
-        workgroupBarrier();
-        let stride = 1u << (level - 4u);
-        let at = 2u * stride * thread;
-        let is_mine = at + stride < RECTIFY_THREADS;
-        var node = 0u;
-        if is_mine {
-            node = rectify_unite(rectify_row[at], rectify_row[at + stride]);
-        }
-        workgroupBarrier();
-        if is_mine {
-            rectify_row[at] = node;
-            let index = (RECTIFY_THREADS * group.x * RECTIFY_LEAVES >> level) + thread;
-            if (index << level) < e.samples {
-                min_max_nodes[min_max_node(e, slice, level, index)] = node;
-            }
+    let group_first = RECTIFY_LEAVES * RECTIFY_THREADS * group.x;
+    let count = min(RECTIFY_LEAVES * RECTIFY_THREADS, e.samples - group_first);
+    for (var k = 1u; k < TREE_LEVELS; k++) {
+        storageBarrier();
+        for (var i = thread; i < (count >> k); i += RECTIFY_THREADS) {
+            let index = (group_first >> k) + i;
+            let below = tree_node(e.samples, slice, k - 1u, 2u * index);
+            min_max_nodes[tree_node(e.samples, slice, k, index)] = tree_unite(min_max_nodes[below], min_max_nodes[below + 1u]);
         }
     }
 }

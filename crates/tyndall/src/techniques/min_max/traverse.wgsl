@@ -1,13 +1,47 @@
 // A view ray through its slice's tree (Chen 2011, fig. 5): without recursion, up at most one level a step, and
 // neighbours in the same state are one stretch. Where a leaf holds both light and shadow, the ray is walked through
-// the shadow map itself, so that its borders are exact.
+// the shadow map itself, so that the borders are exact.
 //
-// Loops that end when there is something rare to do, and then do it once: a processor that runs several rays in step
-// pays for the rare work of one with all of them.
+// Loops end when there is something rare to do, which is then done once; and lit stretches are found first, integrated
+// after. A processor that runs several rays in step pays for the rare work of one with all of them.
 
-@group(2) @binding(0) var<uniform> min_max: MinMax;
+@group(2) @binding(0) var<uniform> epipolar: Epipolar;
 @group(2) @binding(1) var<storage, read> min_max_nodes: array<u32>;
 @group(2) @binding(2) var airlight_table: texture_2d_array<f32>;
+@group(2) @binding(3) var<storage, read> tint_sums: array<vec4f>;
+@group(2) @binding(4) var<storage, read> tint_nodes: array<u32>;
+
+// Lit stretches that are kept before they are integrated.
+const TRAVERSE_STRETCHES: u32 = 8u;
+
+// What does not change along a view ray.
+struct TraverseRay {
+    ray: Ray,
+    span: vec2f, // that the light reaches [m]
+    place: EpipolarRay,
+    slice: u32,
+    end_leaf: u32, // one past the last leaf that lies wholly within the span
+    map_ray: ShadowRay,
+}
+
+// How far a traversal has come.
+struct Traversal {
+    lit: bool,
+    lit_from: f32, // distance [m], where it is lit
+    level: u32,
+    index: u32, // of the node that is next
+    walking: bool, // through the map, from s to walk_end, before the node that is next
+    last_walk: bool, // nothing comes after this walk
+    s: f32,
+    walk_end: f32,
+    walk: ShadowWalk,
+}
+
+// Where light turns to shadow or shadow to light.
+struct TraverseBorder {
+    is_found: bool,
+    s: f32,
+}
 
 @fragment
 fn traverse(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -17,108 +51,163 @@ fn traverse(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return vec4f(before + traverse_light(ray), dot(left, vec3f(1.0 / 3.0)));
 }
 
-fn traverse_border(e: Epipolar, r: EpipolarRay, leaf: u32, span: vec2f) -> f32 {
-    return clamp(epipolar_crossing(r, e.gamma_start + f32(leaf) * e.gamma_step), span.x, span.y);
-}
-
 fn traverse_light(ray: Ray) -> vec3f {
-    let e = min_max.epipolar;
     let span = light_reach(ray);
     if span.x >= span.y {
         return vec3f(0.0);
     }
-    let r = epipolar_ray(e, ray);
-    let ends = (vec2f(epipolar_gamma(r, span.x), epipolar_gamma(r, span.y)) - e.gamma_start) / e.gamma_step;
-    // The leaves that lie wholly within the span; none for rays along the axis.
-    let last = select(0.0, f32(e.samples), r.off_axis > e.least_off_axis);
-    let first = u32(clamp(ceil(ends.x), 0.0, last));
-    let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, last)));
+    let place = epipolar_ray(epipolar, ray);
+    let gammas = vec2f(epipolar_gamma(place, span.x), epipolar_gamma(place, span.y));
+    let ends = (gammas - epipolar.gamma_start) / epipolar.gamma_step;
+    // None for rays along the axis, or where there are no shadows: they are walked from end to end.
+    let has_leaves = SHADOW_KIND != SHADOW_NONE && place.off_axis > epipolar.least_off_axis;
+    let leaves = select(0.0, f32(epipolar.samples), has_leaves);
+    let first = u32(clamp(ceil(ends.x), 0.0, leaves));
+    let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
+    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), end_leaf, shadow_ray(ray));
 
-    let map_ray = shadow_ray(ray);
+    // What comes before the first leaf is walked.
+    let walk_end = select(span.y, traverse_leaf(view, first), has_leaves);
+    let walk = shadow_walk_from(view.map_ray, span.x);
+    var t = Traversal(false, span.x, 0u, first, true, !has_leaves, span.x, walk_end, walk);
+    var stretches = array<vec2f, TRAVERSE_STRETCHES>();
     var sum = vec3f(0.0);
-    var lit = false;
-    var lit_from = span.x;
-    var level = 0u;
-    var index = first;
-    // What comes before the first leaf is walked, and what comes after the last.
-    var walk = shadow_walk_from(map_ray, span.x);
-    var s = span.x;
-    var walk_end = select(traverse_border(e, r, first, span), span.y, last == 0.0);
-    var walking = true;
-    var tail = last == 0.0;
+    var is_done = false;
     loop {
-        var both = false;
+        var count = 0u;
         loop {
-            if walking || (index << level) >= end_leaf {
+            if is_done || count == TRAVERSE_STRETCHES {
                 break;
             }
-            let node = min_max_nodes[min_max_node(e, r.slice, level, index)];
-            let dark = r.b >= f32(node >> 16u);
-            let bright = r.b < f32(node & 0xffffu);
-            both = !(dark || bright);
-            if select(dark, bright, lit) {
-                // On in the same state; up where a parent begins.
-                index += 1u;
-                let up = u32((index & 1u) == 0u && level + 1u < MIN_MAX_LEVELS);
-                level += up;
-                index = index >> up;
-            } else if both && level > 0u {
-                level -= 1u;
-                index *= 2u;
-            } else {
-                break;
-            }
+            let border = traverse_next(view, &t);
+            is_done = !border.is_found;
+            stretches[count] = vec2f(t.lit_from, border.s);
+            count += u32(t.lit);
+            t.lit_from = border.s;
+            t.lit = !t.lit;
         }
-        let leaf = min(index << level, end_leaf);
-        let start = traverse_border(e, r, leaf, span);
-        var event = start;
-        var changes = !walking && leaf < end_leaf && !both;
-        if !walking && !changes {
-            if tail {
-                break;
-            }
-            tail = leaf >= end_leaf;
-            walking = true;
-            s = start;
-            walk_end = select(traverse_border(e, r, leaf + 1u, span), span.y, tail);
-            walk = shadow_walk_from(map_ray, s);
-            index = select(index + 1u, index, tail);
+        for (var i = 0u; i < count; i++) {
+            sum += traverse_stretch(ray, place, stretches[i].x, stretches[i].y);
         }
-        loop {
-            if !walking {
-                break;
-            }
-            if s >= walk_end {
-                walking = false;
-                break;
-            }
-            let end = max(s, min(shadow_walk_end(walk), walk_end));
-            let held = shadow_walk_held(walk);
-            let at = vec2f(shadow_walk_margin(walk, held, s), shadow_walk_margin(walk, held, end));
-            let starts_lit = held <= 0.0 || at.x >= 0.0;
-            let ends_lit = held <= 0.0 || at.y >= 0.0;
-            let now = starts_lit != lit;
-            changes = now || ends_lit != lit;
-            event = select(clamp(s + (end - s) * at.x / (at.x - at.y), s, end), s, now);
-            // Of two changes in one texel the second is left to the next step.
-            if !(now && ends_lit == lit) {
-                s = end;
-                walk = shadow_walk_on(map_ray, walk, end);
-            }
-            if changes {
-                break;
-            }
+        if is_done {
+            break;
         }
-        sum += traverse_stretch(ray, lit_from, select(lit_from, event, changes && lit));
-        lit_from = select(lit_from, event, changes);
-        lit = lit != changes;
     }
-    sum += traverse_stretch(ray, lit_from, select(lit_from, span.y, lit));
     return sum * traverse_common(ray);
 }
 
+// Distance where a leaf begins.
+fn traverse_leaf(view: TraverseRay, leaf: u32) -> f32 {
+    let gamma = epipolar.gamma_start + f32(leaf) * epipolar.gamma_step;
+    return clamp(epipolar_crossing(view.place, gamma), view.span.x, view.span.y);
+}
+
+// On to the next border; to the end of the span where there is none.
+fn traverse_next(view: TraverseRay, t: ptr<function, Traversal>) -> TraverseBorder {
+    let none = TraverseBorder(false, view.span.y);
+    var border = none;
+    loop {
+        let both = traverse_nodes(view, t);
+        let leaf = min((*t).index << (*t).level, view.end_leaf);
+        let start = traverse_leaf(view, leaf);
+        if !(*t).walking && leaf < view.end_leaf && !both {
+            border = TraverseBorder(true, start);
+            break;
+        }
+        if !(*t).walking {
+            if (*t).last_walk {
+                border = none;
+                break;
+            }
+            // A leaf that cannot tell, or what comes after the last.
+            (*t).last_walk = leaf >= view.end_leaf;
+            (*t).walking = true;
+            (*t).s = start;
+            (*t).walk_end = select(traverse_leaf(view, leaf + 1u), view.span.y, (*t).last_walk);
+            (*t).walk = shadow_walk_from(view.map_ray, start);
+            (*t).index += u32(!(*t).last_walk);
+        }
+        border = traverse_texels(view, t);
+        if border.is_found {
+            break;
+        }
+    }
+    return border;
+}
+
+// Past the nodes in the state the ray is in. True where it comes to a leaf that cannot tell.
+fn traverse_nodes(view: TraverseRay, t: ptr<function, Traversal>) -> bool {
+    var both = false;
+    loop {
+        if (*t).walking || ((*t).index << (*t).level) >= view.end_leaf {
+            break;
+        }
+        let node = min_max_nodes[tree_node(epipolar.samples, view.slice, (*t).level, (*t).index)];
+        let bright = view.place.b < tree_minimum(node);
+        let dark = view.place.b >= tree_maximum(node);
+        both = !(dark || bright);
+        if select(dark, bright, (*t).lit) {
+            let next = tree_next((*t).level, (*t).index);
+            (*t).level = next.x;
+            (*t).index = next.y;
+        } else if both && (*t).level > 0u {
+            (*t).level -= 1u;
+            (*t).index *= 2u;
+        } else {
+            break;
+        }
+    }
+    return both;
+}
+
+// Past the texels in the state the ray is in.
+fn traverse_texels(view: TraverseRay, t: ptr<function, Traversal>) -> TraverseBorder {
+    var border = TraverseBorder(false, view.span.y);
+    loop {
+        if border.is_found || !(*t).walking {
+            break;
+        }
+        let s = (*t).s;
+        if s >= (*t).walk_end {
+            (*t).walking = false;
+            break;
+        }
+        let end = max(s, min(shadow_walk_end((*t).walk), (*t).walk_end));
+        let held = shadow_walk_held((*t).walk);
+        let margins = vec2f(shadow_walk_margin((*t).walk, held, s), shadow_walk_margin((*t).walk, held, end));
+        let starts_lit = held <= 0.0 || margins.x >= 0.0;
+        let ends_lit = held <= 0.0 || margins.y >= 0.0;
+        let at_start = starts_lit != (*t).lit;
+        let inside = clamp(s + (end - s) * margins.x / (margins.x - margins.y), s, end);
+        border = TraverseBorder(at_start || ends_lit != (*t).lit, select(inside, s, at_start));
+        // Of two borders in one texel the second is left to the next step.
+        if !(at_start && ends_lit == (*t).lit) {
+            (*t).s = end;
+            (*t).walk = shadow_walk_on(view.map_ray, (*t).walk, end);
+        }
+    }
+    return border;
+}
+
 // The light of a lit stretch, but for the common factor.
-fn traverse_stretch(ray: Ray, a: f32, b: f32) -> vec3f {
+fn traverse_stretch(ray: Ray, r: EpipolarRay, a: f32, b: f32) -> vec3f {
+    if !tint_is_any() {
+        return traverse_plain(ray, a, b);
+    }
+    // Within a block the light but for its tint changes little: there it goes with the tint's mean.
+    let blocks = tint_blocks(ray, r, a, b);
+    let step = (b - a) / blocks;
+    var sum = vec3f(0.0);
+    var start = a;
+    for (var i = 1.0; i <= blocks; i += 1.0) {
+        let end = select(a + i * step, b, i == blocks);
+        sum += tint_mean(epipolar, ray, r, start, end) * traverse_plain(ray, start, end);
+        start = end;
+    }
+    return sum;
+}
+
+fn traverse_plain(ray: Ray, a: f32, b: f32) -> vec3f {
     if light_is_local() {
         return stretch_plain(ray, a, b);
     }
