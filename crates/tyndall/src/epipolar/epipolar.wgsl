@@ -17,6 +17,7 @@ struct Epipolar {
     cotangent: f32, // orthographic and sun: of the view rays' angle to the axis
     tint_start: f32, // gamma of the columns of tints
     tint_step: f32,
+    tint_columns: u32, // 64 times a power of two
     turns: u32, // 1 where the slices are a whole turn
 }
 

@@ -25,8 +25,8 @@ pub(crate) struct EpipolarUniform {
     pub(crate) cotangent: f32,
     pub(crate) tint_start: f32,
     pub(crate) tint_step: f32,
+    pub(crate) tint_columns: u32,
     pub(crate) turns: u32,
-    pub(crate) pad: u32,
 }
 
 impl EpipolarUniform {
@@ -48,7 +48,7 @@ impl EpipolarUniform {
         cotangent: 0.0,
         tint_start: 0.0,
         tint_step: 1.0,
+        tint_columns: 64,
         turns: 0,
-        pad: 0,
     };
 }

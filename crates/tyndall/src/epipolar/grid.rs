@@ -28,9 +28,6 @@ use crate::{
 /// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
 const DEFAULT_SLICES: usize = 1024;
 
-/// Columns of tints a slice: `TINT_COLUMNS` of `tint.wgsl`.
-pub(crate) const TINT_COLUMNS: f64 = 1024.0;
-
 /// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".
 const STEPS: f64 = 65533.0;
 
@@ -179,9 +176,9 @@ impl EpipolarGrid {
             least_off_axis: self.least_off_axis as f32,
             cotangent: self.cotangent as f32,
             tint_start: self.tint_range[0] as f32,
-            tint_step: ((self.tint_range[1] - self.tint_range[0]) / TINT_COLUMNS) as f32,
+            tint_step: ((self.tint_range[1] - self.tint_range[0]) / self.samples as f64) as f32,
+            tint_columns: self.samples as u32,
             turns: u32::from(self.slices.is_whole_turn()),
-            pad: 0,
         }
     }
 

@@ -76,6 +76,16 @@ fn light_spot_falloff(cos_angle: f32, cos_inner: f32, cos_outer: f32) -> f32 {
     return t * t;
 }
 
+// What the light ray through a point is dimmed and tinted by on its whole length: cone and picture.
+fn light_ray_tint(point: vec3f) -> vec3f {
+    var falloff = 1.0;
+    if LIGHT_KIND == LIGHT_SPOT {
+        let way = normalize(point - light.position);
+        falloff = light_spot_falloff(dot(way, light.direction), light.cos_inner, light.cos_outer);
+    }
+    return falloff * light_tint(point);
+}
+
 fn light_incident(point: vec3f) -> Incident {
     let color = light.color * light_tint(point);
     if !light_is_local() {

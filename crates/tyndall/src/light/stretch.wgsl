@@ -86,3 +86,15 @@ fn stretch_density(place: AirlightLight, axis: vec2f, xi: f32) -> vec3f {
     let path = place.projection + place.height * tan(0.25 * PI + 0.5 * xi);
     return falloff * medium_scattering(-sin(xi)) * transmittance(frame.medium.sigma_t, path);
 }
+
+// The light of a short stretch of a light that shines evenly to all sides, by the rule of the middle over the angle at
+// the light: ds / d^2 = d xi / h.
+fn stretch_middle(ray: Ray, a: f32, b: f32) -> vec3f {
+    let place = stretch_light(ray);
+    let from_light = vec2f(a, b) - place.projection;
+    let xi = atan(from_light / place.height);
+    let middle = 0.5 * (xi.x + xi.y);
+    let path = place.projection + place.height * tan(0.25 * PI + 0.5 * middle);
+    let scattered = medium_scattering(-sin(middle)) * transmittance(frame.medium.sigma_t, path);
+    return scattered * (xi.y - xi.x) / place.height;
+}

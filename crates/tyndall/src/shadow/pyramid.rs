@@ -13,16 +13,35 @@ const BUILD: &str = include_str!("pyramid_build.wgsl");
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
-/// The shaders that build one: its first level, and any other.
+/// What a pyramid is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// The shadow map.
+    ShadowMap,
+    /// The nearest layer of glass that tints.
+    Glass,
+}
+
+impl Source {
+    fn name(self) -> &'static str {
+        match self {
+            Self::ShadowMap => "shadow map pyramid",
+            Self::Glass => "glass pyramid",
+        }
+    }
+}
+
+/// The shaders that build pyramids: the first level of either source, and any other.
 pub(crate) struct Programs {
-    first: ScreenProgram,
+    of_map: ScreenProgram,
+    of_glass: ScreenProgram,
     next: ScreenProgram,
 }
 
 impl Programs {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let own = [layout::uniform::<[u32; 4]>(0), layout::texels(1)];
-        let program = |first: bool| {
+        let program = |source: f64| {
             ScreenProgram::new(
                 device,
                 shared,
@@ -32,33 +51,40 @@ impl Programs {
                 &own,
             )
             .writing(FORMAT)
-            .with("PYRAMID_FIRST", f64::from(u8::from(first)))
+            .with("PYRAMID_SOURCE", source)
         };
         Self {
-            first: program(true),
-            next: program(false),
+            next: program(0.0),
+            of_map: program(1.0),
+            of_glass: program(2.0),
         }
     }
 }
 
-/// The pyramid of a light's shadow map, as an array of faces, and the pass that builds it.
+/// A pyramid as an array of a light's faces, and the pass that builds it from a picture of `size` texels a face.
 pub(crate) fn build(
     programs: &Programs,
     scope: &mut LightScope<'_>,
-    map: &wgpu::Texture,
+    source: Source,
+    size: [u32; 2],
+    faces: u32,
 ) -> (wgpu::TextureView, Pass) {
-    // Powers of two are halved without a rest; what lies beyond the map repeats its border.
-    let half = |n: u32| (n.next_power_of_two() / 2).max(1);
-    let size = wgpu::Extent3d {
-        width: half(map.width()),
-        height: half(map.height()),
-        depth_or_array_layers: map.depth_or_array_layers(),
+    // Powers of two are halved without a rest; what lies beyond the picture repeats its border.
+    let [width, height] = size.map(|n| (n.next_power_of_two() / 2).max(1));
+    let extent = wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: faces,
     };
-    let levels = size.width.max(size.height).ilog2() + 1;
+    let levels = width.max(height).ilog2() + 1;
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-    let texture = scope.texture("shadow map pyramid", size, levels, FORMAT, usage);
+    let texture = scope.texture(source.name(), extent, levels, FORMAT, usage);
+    let first = match source {
+        Source::ShadowMap => &programs.of_map,
+        Source::Glass => &programs.of_glass,
+    };
     let mut draws = Vec::new();
-    for layer in 0..size.depth_or_array_layers {
+    for layer in 0..faces {
         let face = scope.uniform(FACES[layer as usize], &[layer, 0, 0, 0]);
         let mut above = scope.shared.absent.light.clone();
         for level in 0..levels {
@@ -70,11 +96,7 @@ pub(crate) fn build(
                 array_layer_count: Some(1),
                 ..Default::default()
             });
-            let program = if level == 0 {
-                &programs.first
-            } else {
-                &programs.next
-            };
+            let program = if level == 0 { first } else { &programs.next };
             let resources = [
                 face.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&above),
@@ -88,7 +110,7 @@ pub(crate) fn build(
         ..Default::default()
     });
     let pass = Pass {
-        name: scope.pass_name("shadow map pyramid"),
+        name: scope.pass_name(source.name()),
         work: Work::FullScreen(draws),
     };
     (whole, pass)

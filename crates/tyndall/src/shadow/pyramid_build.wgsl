@@ -1,4 +1,5 @@
-// A level of the pyramid from the one above it, or its first from the shadow map itself.
+// A level of a pyramid from the one above it, or its first from the shadow map, or from coloured glass: of that, the
+// nearest layer that tints, and nothing as the farthest.
 
 struct PyramidFace {
     layer: u32,
@@ -7,21 +8,35 @@ struct PyramidFace {
 @group(2) @binding(0) var<uniform> pyramid_face: PyramidFace;
 @group(2) @binding(1) var pyramid_above: texture_2d<f32>;
 
-override PYRAMID_FIRST: bool = false;
+const PYRAMID_FROM_PYRAMID: u32 = 0u;
+const PYRAMID_FROM_MAP: u32 = 1u;
+const PYRAMID_FROM_GLASS: u32 = 2u;
+
+override PYRAMID_SOURCE: u32 = 0u;
+
+fn pyramid_source_size() -> vec2u {
+    switch PYRAMID_SOURCE {
+        case PYRAMID_FROM_MAP: { return textureDimensions(shadow_map); }
+        case PYRAMID_FROM_GLASS: { return textureDimensions(shadow_glass); }
+        default: { return textureDimensions(pyramid_above); }
+    }
+}
 
 fn pyramid_read(at: vec2u) -> vec2f {
-    if PYRAMID_FIRST {
-        let held = textureLoad(shadow_map, at, pyramid_face.layer, 0);
-        return vec2f(select(held, 1.0 - held, light.standard_depth == 1u));
+    switch PYRAMID_SOURCE {
+        case PYRAMID_FROM_MAP: {
+            let held = textureLoad(shadow_map, at, pyramid_face.layer, 0);
+            return vec2f(select(held, 1.0 - held, light.standard_depth == 1u));
+        }
+        case PYRAMID_FROM_GLASS: { return vec2f(0.0, shadow_glass_nearest(at, pyramid_face.layer)); }
+        default: { return textureLoad(pyramid_above, at, 0).rg; }
     }
-    return textureLoad(pyramid_above, at, 0).rg;
 }
 
 @fragment
 fn pyramid_build(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let size = select(textureDimensions(pyramid_above), textureDimensions(shadow_map), PYRAMID_FIRST);
     let first = 2u * vec2u(position.xy);
-    let last = size - 1u;
+    let last = pyramid_source_size() - 1u;
     let top = pyramid_unite(
         pyramid_read(min(first, last)),
         pyramid_read(min(first + vec2u(1u, 0u), last)),

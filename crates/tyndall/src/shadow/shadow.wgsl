@@ -67,25 +67,24 @@ fn shadow_cube_point(q: vec3f) -> ShadowPoint {
     return ShadowPoint(0.5 + 0.5 * s * inverse, face + u32(negative), light.cube_depth.x * inverse + light.cube_depth.y);
 }
 
-// A light ray on the map: where it falls, in texels, and the terms of shadow_line_end.
+// A light ray on the map: where it falls, (0, 0) top left to (1, 1) bottom right, and the terms of shadow_line_end.
 struct ShadowLine {
-    texel: vec2f,
+    uv: vec2f,
     face: u32,
     terms: vec4f,
 }
 
 // Of a light ray from `origin`, a local light's position or any point of the sun's ray, that travels along `way`.
 fn shadow_line(origin: vec3f, way: vec3f) -> ShadowLine {
-    let size = vec2f(textureDimensions(shadow_map));
     if SHADOW_KIND == SHADOW_CUBE {
         let point = shadow_cube_point(way);
         let axis = light.cube_depth.x / (point.depth - light.cube_depth.y);
         let terms = vec4f(0.0, light.cube_depth.x, light.cube_depth.y * axis, axis);
-        return ShadowLine(point.uv * size, point.face, terms);
+        return ShadowLine(point.uv, point.face, terms);
     }
     let c0 = light.clip_from_world * vec4f(origin, 1.0);
     let c1 = light.clip_from_world * vec4f(way, 0.0);
-    return ShadowLine(shadow_point(c0 + c1).uv * size, 0u, vec4f(c0.w, c0.z, c1.z, c1.w));
+    return ShadowLine(shadow_point(c0 + c1).uv, 0u, vec4f(c0.w, c0.z, c1.z, c1.w));
 }
 
 // Distance [m] along the light ray to the plane of this depth: z(t) = depth w(t).
@@ -128,12 +127,31 @@ fn shadow_glass_unpack(roots: u32) -> vec3f {
 // f32, and a tint.
 fn shadow_glass_tint(place: ShadowPoint) -> vec3f {
     let texel = vec2u(place.uv * vec2f(textureDimensions(shadow_glass)));
+    return shadow_glass_texel_tint(texel, place.face, place.depth);
+}
+
+// The same of a point at this depth over a texel. Layers come nearest to the light first, empty ones last.
+fn shadow_glass_texel_tint(texel: vec2u, face: u32, depth: f32) -> vec3f {
     var tint = vec3f(1.0);
     for (var layer = 0u; layer < light.glass_layers; layer++) {
-        let glass = textureLoad(shadow_glass, texel, place.face * light.glass_layers + layer, 0).xy;
-        if !shadow_reaches(place.depth, bitcast<f32>(glass.x)) {
-            tint *= shadow_glass_unpack(glass.y);
+        let glass = textureLoad(shadow_glass, texel, face * light.glass_layers + layer, 0).xy;
+        if shadow_reaches(depth, bitcast<f32>(glass.x)) {
+            break;
         }
+        tint *= shadow_glass_unpack(glass.y);
     }
     return tint;
+}
+
+// Depth of the nearest layer that tints, 1 nearest to the light; 0 where none does.
+fn shadow_glass_nearest(texel: vec2u, face: u32) -> f32 {
+    for (var layer = 0u; layer < light.glass_layers; layer++) {
+        let glass = textureLoad(shadow_glass, texel, face * light.glass_layers + layer, 0).xy;
+        let held = bitcast<f32>(glass.x);
+        let depth = select(held, 1.0 - held, light.standard_depth == 1u);
+        if depth <= 0.0 || any(shadow_glass_unpack(glass.y) != vec3f(1.0)) {
+            return max(depth, 0.0);
+        }
+    }
+    return 0.0;
 }

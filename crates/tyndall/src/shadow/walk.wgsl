@@ -1,4 +1,4 @@
-// A view ray walked through the shadow map texel by texel: the exact limit of marching it; see shadow/walk.rs.
+// A view ray walked through a picture that the light sees, texel by texel: the exact limit of marching it; see shadow/walk.rs.
 
 // A ray over one face: (column, row, z, w) = c0 + s c1, homogeneous, in texels; w > 0.
 struct ShadowWalk {
@@ -6,6 +6,7 @@ struct ShadowWalk {
     c1: vec4f,
     texel: vec2i, // one beyond the border where it is outside the map
     face: u32,
+    size: vec2f, // of the picture, in texels
     next: vec2f, // distances where the next column and the next row begin
 }
 
@@ -22,8 +23,7 @@ fn shadow_on_face(q: vec3f, face: u32) -> vec3f {
 }
 
 // In the texel that holds the ray's point at distance `probe`.
-fn shadow_walk_from(map_ray: ShadowRay, probe: f32) -> ShadowWalk {
-    let size = vec2f(textureDimensions(shadow_map));
+fn shadow_walk_from(map_ray: ShadowRay, size: vec2f, probe: f32) -> ShadowWalk {
     var c0 = vec4f(map_ray.c0.x, -map_ray.c0.y, map_ray.c0.zw);
     var c1 = vec4f(map_ray.c1.x, -map_ray.c1.y, map_ray.c1.zw);
     var face = 0u;
@@ -41,7 +41,7 @@ fn shadow_walk_from(map_ray: ShadowRay, probe: f32) -> ShadowWalk {
     if SHADOW_KIND == SHADOW_CUBE {
         texel = clamp(texel, vec2i(0), vec2i(size) - 1);
     }
-    return shadow_walk_next(ShadowWalk(c0, c1, texel, face, vec2f(0.0)));
+    return shadow_walk_next(ShadowWalk(c0, c1, texel, face, size, vec2f(0.0)));
 }
 
 fn shadow_walk_way(walk: ShadowWalk) -> vec2i {
@@ -49,11 +49,10 @@ fn shadow_walk_way(walk: ShadowWalk) -> vec2i {
 }
 
 fn shadow_walk_next(walk: ShadowWalk) -> ShadowWalk {
-    let size = vec2f(textureDimensions(shadow_map));
     let way = shadow_walk_way(walk);
     let border = vec2f(walk.texel + max(way, vec2i(0)));
     let crossing = (border * walk.c0.w - walk.c0.xy) / (walk.c1.xy - border * walk.c1.w);
-    let is_border = (way != vec2i(0)) & (border >= vec2f(0.0)) & (border <= size);
+    let is_border = (way != vec2i(0)) & (border >= vec2f(0.0)) & (border <= walk.size);
     var next = walk;
     next.next = select(vec2f(1e30), crossing, is_border);
     return next;
@@ -69,21 +68,21 @@ fn shadow_walk_on(map_ray: ShadowRay, walk: ShadowWalk, s: f32) -> ShadowWalk {
     var on = walk;
     on.texel += select(vec2i(0), shadow_walk_way(walk), walk.next <= vec2f(s));
     on = shadow_walk_next(on);
-    if SHADOW_KIND == SHADOW_CUBE {
-        let size = vec2i(textureDimensions(shadow_map));
-        if any(on.texel < vec2i(0)) || any(on.texel >= size) {
-            return shadow_walk_from(map_ray, s * 1.00001 + 1e-6);
-        }
+    if SHADOW_KIND == SHADOW_CUBE && shadow_walk_is_outside(on) {
+        return shadow_walk_from(map_ray, walk.size, s * 1.00001 + 1e-6);
     }
     return on;
 }
 
-// Depth of the texel, 1 nearest to the light; 0 where it holds nothing or lies outside the map.
+fn shadow_walk_is_outside(walk: ShadowWalk) -> bool {
+    return any(walk.texel < vec2i(0)) || any(walk.texel >= vec2i(walk.size));
+}
+
+// Depth of the shadow map's texel, 1 nearest to the light; 0 where it holds nothing or lies outside the map.
 fn shadow_walk_held(walk: ShadowWalk) -> f32 {
-    let size = vec2i(textureDimensions(shadow_map));
-    let held = textureLoad(shadow_map, clamp(walk.texel, vec2i(0), size - 1), walk.face, 0);
-    let outside = any(walk.texel < vec2i(0)) || any(walk.texel >= size);
-    return select(select(held, 1.0 - held, light.standard_depth == 1u), 0.0, outside);
+    let texel = clamp(walk.texel, vec2i(0), vec2i(walk.size) - 1);
+    let held = textureLoad(shadow_map, texel, walk.face, 0);
+    return select(select(held, 1.0 - held, light.standard_depth == 1u), 0.0, shadow_walk_is_outside(walk));
 }
 
 // >= 0 where light reaches the ray's point at distance s past this depth.

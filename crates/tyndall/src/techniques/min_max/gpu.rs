@@ -6,7 +6,7 @@ use super::Params;
 use crate::{
     epipolar::{
         gpu::{EPIPOLAR, EpipolarUniform},
-        grid::{EpipolarGrid, GridScene, TINT_COLUMNS},
+        grid::{EpipolarGrid, GridScene},
     },
     frame::Emitter,
     gpu::{
@@ -20,8 +20,9 @@ use crate::{
     physics::medium::reals,
     shadow::{
         self,
-        pyramid::{self, PYRAMID},
+        pyramid::{self, PYRAMID, Source},
     },
+    validate,
 };
 
 const TREE: &str = include_str!("tree.wgsl");
@@ -35,31 +36,32 @@ const LEAVES_A_WORKGROUP: u32 = 512;
 const TINT: &str = include_str!("tint.wgsl");
 const TINT_ROWS: &str = include_str!("tint_rows.wgsl");
 const TINT_MEAN: &str = include_str!("tint_mean.wgsl");
+const GLASS: &str = include_str!("glass.wgsl");
 
 /// The technique's shaders.
 pub(crate) struct Programs {
     pyramid: pyramid::Programs,
     rectify: ComputeProgram,
+    rectify_glass: ComputeProgram,
     tint_rows: ComputeProgram,
     traverse: ScreenProgram,
 }
 
 impl Programs {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let rectify = || {
+            let own = [
+                layout::uniform::<EpipolarUniform>(0),
+                layout::texel_layers(1),
+                layout::storage(2, false),
+            ];
+            let modules = [EPIPOLAR, PYRAMID, TREE, RECTIFY];
+            ComputeProgram::new(device, shared, "rectify", &modules, "rectify", &own)
+        };
         Self {
             pyramid: pyramid::Programs::new(device, shared),
-            rectify: ComputeProgram::new(
-                device,
-                shared,
-                "rectify",
-                &[EPIPOLAR, PYRAMID, TREE, RECTIFY],
-                "rectify",
-                &[
-                    layout::uniform::<EpipolarUniform>(0),
-                    layout::texel_layers(1),
-                    layout::storage(2, false),
-                ],
-            ),
+            rectify: rectify(),
+            rectify_glass: rectify().with("RECTIFY_GLASS", 1.0),
             tint_rows: ComputeProgram::new(
                 device,
                 shared,
@@ -69,7 +71,6 @@ impl Programs {
                 &[
                     layout::uniform::<EpipolarUniform>(0),
                     layout::storage(1, false),
-                    layout::storage(2, false),
                 ],
             ),
             traverse: ScreenProgram::new(
@@ -77,7 +78,7 @@ impl Programs {
                 shared,
                 "traverse",
                 &[
-                    AIRLIGHT, STRETCH, EPIPOLAR, WALK, TREE, TINT, TINT_MEAN, TRAVERSE,
+                    AIRLIGHT, STRETCH, EPIPOLAR, WALK, TREE, TINT, TINT_MEAN, GLASS, TRAVERSE,
                 ],
                 "traverse",
                 &[
@@ -101,35 +102,30 @@ pub(crate) fn passes(
     let grid = grid(params, scope);
     let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| grid.uniform());
     let uniform = scope.uniform("epipolar grid", &epipolar);
-    let needs = Needs::new(&epipolar, scope);
-    let nodes = scope.storage("min-max nodes", needs.nodes);
-    let tint_sums = scope.storage("tint sums", needs.tint_sums);
-    let tint_nodes = scope.storage("tint nodes", needs.tint_nodes);
+    let bytes = Bytes::new(&epipolar, scope);
+    let nodes = scope.storage("min-max nodes", bytes.nodes);
+    let tint_sums = scope.storage("tint sums", bytes.tint_sums);
+    let glass_nodes = scope.storage("glass nodes", bytes.glass_nodes);
     let mut passes = Vec::new();
-    if let (Some(_), Some(map)) = (grid, scope.inputs.shadow_map) {
-        let (pyramid, pass) = pyramid::build(&programs.pyramid, scope, map.texture());
-        passes.push(pass);
-        let resources = [
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&pyramid),
-            nodes.as_entire_binding(),
+    if grid.is_some() {
+        let inputs = scope.inputs;
+        let sources = [
+            (Source::ShadowMap, inputs.shadow_map, &nodes),
+            (Source::Glass, inputs.glass, &glass_nodes),
         ];
-        let groups = [
-            epipolar.samples.div_ceil(LEAVES_A_WORKGROUP),
-            epipolar.slices,
-            1,
-        ];
-        passes.push(scope.compute(
-            &programs.rectify,
-            "rectify and build trees",
-            &resources,
-            groups,
-        ));
-    }
-    if grid.is_some() && needs.has_tints {
-        let resources = [&uniform, &tint_sums, &tint_nodes].map(|b| b.as_entire_binding());
-        let groups = [epipolar.slices, 1, 1];
-        passes.push(scope.compute(&programs.tint_rows, "sum up tints", &resources, groups));
+        for (source, picture, nodes) in sources {
+            if let Some(picture) = picture {
+                let size = [picture.texture().width(), picture.texture().height()];
+                passes.extend(rectify(
+                    programs, scope, source, size, &uniform, &epipolar, nodes,
+                ));
+            }
+        }
+        if inputs.texture.is_some() {
+            let resources = [&uniform, &tint_sums].map(|b| b.as_entire_binding());
+            let groups = [epipolar.slices, 1, 1];
+            passes.push(scope.compute(&programs.tint_rows, "sum up picture", &resources, groups));
+        }
     }
     let airlight = scope.airlight();
     let resources = [
@@ -137,38 +133,58 @@ pub(crate) fn passes(
         nodes.as_entire_binding(),
         wgpu::BindingResource::TextureView(&airlight),
         tint_sums.as_entire_binding(),
-        tint_nodes.as_entire_binding(),
+        glass_nodes.as_entire_binding(),
     ];
     passes.push(scope.full_screen(&programs.traverse, "traverse", &resources));
     passes
 }
 
-/// Bytes of the buffers; those that nothing reads are as small as a buffer may be.
-struct Needs {
-    nodes: u64,
-    tint_sums: u64,
-    tint_nodes: u64,
-    has_tints: bool,
+/// The passes that make trees of a picture the light sees, of `size` texels a face.
+fn rectify(
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+    source: Source,
+    size: [u32; 2],
+    uniform: &wgpu::Buffer,
+    grid: &EpipolarUniform,
+    nodes: &wgpu::Buffer,
+) -> [Pass; 2] {
+    let faces = validate::faces(scope.light);
+    let (pyramid, build) = pyramid::build(&programs.pyramid, scope, source, size, faces);
+    let (program, name) = match source {
+        Source::ShadowMap => (&programs.rectify, "shadow trees"),
+        Source::Glass => (&programs.rectify_glass, "glass trees"),
+    };
+    let resources = [
+        uniform.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&pyramid),
+        nodes.as_entire_binding(),
+    ];
+    let groups = [grid.samples.div_ceil(LEAVES_A_WORKGROUP), grid.slices, 1];
+    [build, scope.compute(program, name, &resources, groups)]
 }
 
-impl Needs {
-    const NOTHING: u64 = 16;
+/// Bytes of the buffers; those that nothing reads are as small as a buffer may be.
+struct Bytes {
+    nodes: u64,
+    tint_sums: u64,
+    glass_nodes: u64,
+}
 
+impl Bytes {
     fn new(grid: &EpipolarUniform, scope: &LightScope<'_>) -> Self {
         let slices = u64::from(grid.slices);
-        let columns = TINT_COLUMNS as u64;
-        let has_glass = scope.inputs.glass.is_some();
-        let has_tints = has_glass || scope.inputs.texture.is_some();
-        let rows = slices * if has_glass { 2 } else { 1 };
-        let if_used = |used: bool, bytes: u64| if used { bytes } else { Self::NOTHING };
+        let if_used = |used: bool, bytes: u64| if used { bytes } else { 16 };
+        // Two 16-bit numbers a node, twice as many nodes as leaves.
+        let nodes = 8 * slices * u64::from(grid.samples);
+        let inputs = &scope.inputs;
         Self {
-            nodes: if_used(
-                scope.inputs.shadow_map.is_some(),
-                8 * slices * u64::from(grid.samples),
+            nodes: if_used(inputs.shadow_map.is_some(), nodes),
+            tint_sums: if_used(
+                inputs.texture.is_some(),
+                16 * slices * (u64::from(grid.tint_columns) + 1),
             ),
-            tint_sums: if_used(has_tints, 16 * rows * (columns + 1)),
-            tint_nodes: if_used(has_glass, 8 * slices * columns),
-            has_tints,
+            glass_nodes: if_used(inputs.glass.is_some(), nodes),
         }
     }
 }

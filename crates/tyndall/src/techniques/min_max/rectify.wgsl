@@ -1,11 +1,15 @@
 // The shadow map rectified to slices, and a tree of (min, max) over each (Chen 2011, sections 3.2 and 3.3), in one go.
 //
+// Of coloured glass the same with its nearest layer that tints: before the least S of that there is no tint.
+//
 // A leaf is a cell of light rays, as wide as the slice: it holds the least and the greatest S of all of them, so that
 // a view ray anywhere in the slice that passes the test at a node is lit, or dark, all along it.
 
 @group(2) @binding(0) var<uniform> epipolar: Epipolar;
 @group(2) @binding(1) var pyramid: texture_2d_array<f32>;
 @group(2) @binding(2) var<storage, read_write> min_max_nodes: array<u32>;
+
+override RECTIFY_GLASS: bool = false;
 
 // Leaves a thread takes, and levels it builds of them.
 const RECTIFY_LEAVES: u32 = 8u;
@@ -37,6 +41,13 @@ fn rectify_level(texels: u32) -> u32 {
     return min(firstLeadingBit(max(texels, 1u)), textureNumLevels(pyramid) - 1u);
 }
 
+fn rectify_size() -> vec2f {
+    if RECTIFY_GLASS {
+        return vec2f(textureDimensions(shadow_glass));
+    }
+    return vec2f(textureDimensions(shadow_map));
+}
+
 struct RectifySide {
     gamma: f32,
     first: ShadowLine,
@@ -52,11 +63,11 @@ fn rectify_side(outward: mat2x3f, alphas: vec2f, gamma: f32) -> RectifySide {
 
 fn rectify_cell(a: RectifySide, b: RectifySide, level: u32) -> u32 {
     let e = epipolar;
-    let size = vec2f(textureDimensions(shadow_map));
-    let lowest = min(min(a.first.texel, a.second.texel), min(b.first.texel, b.second.texel));
-    let highest = max(max(a.first.texel, a.second.texel), max(b.first.texel, b.second.texel));
+    let size = rectify_size();
+    let lowest = size * min(min(a.first.uv, a.second.uv), min(b.first.uv, b.second.uv));
+    let highest = size * max(max(a.first.uv, a.second.uv), max(b.first.uv, b.second.uv));
     // The cell's ends are arcs, which bulge beyond their chords.
-    let chord = max(distance(a.first.texel, a.second.texel), distance(b.first.texel, b.second.texel));
+    let chord = max(distance(size * a.first.uv, size * a.second.uv), distance(size * b.first.uv, size * b.second.uv));
     let margin = 0.02 + 0.25 * chord * min(abs(e.alpha_step), 1.0);
     let low = floor(lowest - margin);
     let high = floor(highest + margin);
@@ -112,7 +123,7 @@ fn rectify(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let one_on = rectify_side(outward, alphas, middle + e.gamma_step);
     let here = rectify_side(outward, alphas, middle);
     if first < e.samples && here.first.face == one_on.second.face {
-        let across = max(abs(one_on.first.texel - here.second.texel), abs(one_on.second.texel - here.first.texel));
+        let across = rectify_size() * max(abs(one_on.first.uv - here.second.uv), abs(one_on.second.uv - here.first.uv));
         atomicMax(&rectify_largest, u32(min(max(across.x, across.y), 16384.0)));
     }
     workgroupBarrier();

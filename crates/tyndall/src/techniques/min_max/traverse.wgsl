@@ -9,7 +9,7 @@
 @group(2) @binding(1) var<storage, read> min_max_nodes: array<u32>;
 @group(2) @binding(2) var airlight_table: texture_2d_array<f32>;
 @group(2) @binding(3) var<storage, read> tint_sums: array<vec4f>;
-@group(2) @binding(4) var<storage, read> tint_nodes: array<u32>;
+@group(2) @binding(4) var<storage, read> glass_nodes: array<u32>;
 
 // Lit stretches that are kept before they are integrated.
 const TRAVERSE_STRETCHES: u32 = 8u;
@@ -20,6 +20,7 @@ struct TraverseRay {
     span: vec2f, // that the light reaches [m]
     place: EpipolarRay,
     slice: u32,
+    has_leaves: bool, // none for rays along the axis, or where there are no shadows: they are walked from end to end
     end_leaf: u32, // one past the last leaf that lies wholly within the span
     map_ray: ShadowRay,
 }
@@ -59,16 +60,15 @@ fn traverse_light(ray: Ray) -> vec3f {
     let place = epipolar_ray(epipolar, ray);
     let gammas = vec2f(epipolar_gamma(place, span.x), epipolar_gamma(place, span.y));
     let ends = (gammas - epipolar.gamma_start) / epipolar.gamma_step;
-    // None for rays along the axis, or where there are no shadows: they are walked from end to end.
     let has_leaves = SHADOW_KIND != SHADOW_NONE && place.off_axis > epipolar.least_off_axis;
     let leaves = select(0.0, f32(epipolar.samples), has_leaves);
     let first = u32(clamp(ceil(ends.x), 0.0, leaves));
     let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
-    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), end_leaf, shadow_ray(ray));
+    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_leaves, end_leaf, shadow_ray(ray));
 
     // What comes before the first leaf is walked.
     let walk_end = select(span.y, traverse_leaf(view, first), has_leaves);
-    let walk = shadow_walk_from(view.map_ray, span.x);
+    let walk = shadow_walk_from(view.map_ray, traverse_map_size(), span.x);
     var t = Traversal(false, span.x, 0u, first, true, !has_leaves, span.x, walk_end, walk);
     var stretches = array<vec2f, TRAVERSE_STRETCHES>();
     var sum = vec3f(0.0);
@@ -87,7 +87,7 @@ fn traverse_light(ray: Ray) -> vec3f {
             t.lit = !t.lit;
         }
         for (var i = 0u; i < count; i++) {
-            sum += traverse_stretch(ray, place, stretches[i].x, stretches[i].y);
+            sum += traverse_stretch(view, stretches[i].x, stretches[i].y);
         }
         if is_done {
             break;
@@ -124,7 +124,7 @@ fn traverse_next(view: TraverseRay, t: ptr<function, Traversal>) -> TraverseBord
             (*t).walking = true;
             (*t).s = start;
             (*t).walk_end = select(traverse_leaf(view, leaf + 1u), view.span.y, (*t).last_walk);
-            (*t).walk = shadow_walk_from(view.map_ray, start);
+            (*t).walk = shadow_walk_from(view.map_ray, traverse_map_size(), start);
             (*t).index += u32(!(*t).last_walk);
         }
         border = traverse_texels(view, t);
@@ -189,27 +189,25 @@ fn traverse_texels(view: TraverseRay, t: ptr<function, Traversal>) -> TraverseBo
     return border;
 }
 
-// The light of a lit stretch, but for the common factor.
-fn traverse_stretch(ray: Ray, r: EpipolarRay, a: f32, b: f32) -> vec3f {
-    if !tint_is_any() {
-        return traverse_plain(ray, a, b);
-    }
-    // Within a block the light but for its tint changes little: there it goes with the tint's mean.
-    let blocks = tint_blocks(ray, r, a, b);
-    let step = (b - a) / blocks;
-    var sum = vec3f(0.0);
-    var start = a;
-    for (var i = 1.0; i <= blocks; i += 1.0) {
-        let end = select(a + i * step, b, i == blocks);
-        sum += tint_mean(epipolar, ray, r, start, end) * traverse_plain(ray, start, end);
-        start = end;
-    }
-    return sum;
+fn traverse_map_size() -> vec2f {
+    return vec2f(textureDimensions(shadow_map));
 }
 
-fn traverse_plain(ray: Ray, a: f32, b: f32) -> vec3f {
+// The light of a lit stretch, but for the common factor.
+fn traverse_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
+    if SHADOW_GLASS {
+        return glass_stretch(view, a, b);
+    }
+    return traverse_clear(view, a, b);
+}
+
+// The same where there is no coloured glass before it.
+fn traverse_clear(view: TraverseRay, a: f32, b: f32) -> vec3f {
+    if tint_has_picture() {
+        return tint_stretch(epipolar, view.ray, view.place, a, b);
+    }
     if light_is_local() {
-        return stretch_plain(ray, a, b);
+        return stretch_plain(view.ray, a, b);
     }
     return transmittance_integral(frame.medium.sigma_t, a, b);
 }

@@ -1,0 +1,70 @@
+// Lit stretches behind coloured glass. A second tree holds the least S of the glass that tints: before it the light is
+// as the picture has it; past it the ray is walked through the glass's texels, each with its own tint.
+
+// The light of a lit stretch, but for the common factor.
+fn glass_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
+    let e = epipolar;
+    let ends = (vec2f(epipolar_gamma(view.place, a), epipolar_gamma(view.place, b)) - e.gamma_start) / e.gamma_step;
+    let leaves = select(0.0, f32(e.samples), view.has_leaves);
+    let first = u32(clamp(ceil(ends.x), 0.0, leaves));
+    let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
+    var level = 0u;
+    var index = first;
+    // What no leaf holds whole may be behind glass.
+    var tinted = true;
+    var start = a;
+    var sum = vec3f(0.0);
+    loop {
+        // On while it is as before; both states are told by the least S alone.
+        loop {
+            if (index << level) >= end_leaf {
+                break;
+            }
+            let clear = view.place.b < tree_minimum(glass_nodes[tree_node(e.samples, view.slice, level, index)]);
+            if clear != tinted && (clear || level == 0u) {
+                let next = tree_next(level, index);
+                level = next.x;
+                index = next.y;
+            } else if !clear && level > 0u {
+                level -= 1u;
+                index *= 2u;
+            } else {
+                break;
+            }
+        }
+        let leaf = min(index << level, end_leaf);
+        let is_last = leaf >= end_leaf;
+        let stop = clamp(select(traverse_leaf(view, leaf), b, is_last && (tinted || ends.y <= f32(end_leaf))), start, b);
+        sum += glass_walk(view, start, select(start, stop, tinted));
+        sum += traverse_clear(view, start, select(stop, start, tinted));
+        start = stop;
+        if start >= b {
+            break;
+        }
+        tinted = !tinted;
+    }
+    return sum;
+}
+
+// Texel by texel.
+fn glass_walk(view: TraverseRay, a: f32, b: f32) -> vec3f {
+    let size = textureDimensions(shadow_glass);
+    var walk = shadow_walk_from(view.map_ray, vec2f(size), a);
+    var s = a;
+    var sum = vec3f(0.0);
+    loop {
+        if s >= b {
+            break;
+        }
+        let end = clamp(shadow_walk_end(walk), s, b);
+        let middle = 0.5 * (s + end);
+        let zw = walk.c0.zw + middle * walk.c1.zw;
+        let texel = vec2u(clamp(walk.texel, vec2i(0), vec2i(size) - 1));
+        let behind = shadow_glass_texel_tint(texel, walk.face, zw.x / zw.y);
+        let tint = select(behind, vec3f(1.0), shadow_walk_is_outside(walk));
+        sum += tint * light_ray_tint(view.ray.origin + middle * view.ray.direction) * tint_even(view.ray, s, end);
+        walk = shadow_walk_on(view.map_ray, walk, end);
+        s = end;
+    }
+    return sum;
+}
