@@ -52,6 +52,7 @@ pub(crate) struct EpipolarGrid {
     least_off_axis: f64,
     /// Range of gamma over which tints are summed.
     tint_range: [f64; 2],
+    beta_range: [f64; 2],
 }
 
 /// What of the scene a grid covers.
@@ -139,6 +140,7 @@ impl EpipolarGrid {
             b_scale: 1.0,
             least_off_axis: resolution.epipole_radius * pixel,
             tint_range: [0.0, 1.0],
+            beta_range: [0.0, 1.0],
         };
         grid.slices = grid.choose_slices(scene, resolution);
         let seen = match local {
@@ -146,6 +148,9 @@ impl EpipolarGrid {
             None => grid.gammas_seen(scene),
         };
         grid.tint_range = seen;
+        if !orthographic {
+            grid.beta_range = grid.betas_seen(scene);
+        }
         let [start, end] = grid.gamma_range(scene);
         grid.gamma_start = start;
         grid.gamma_step = (end - start) / grid.samples as f64;
@@ -155,9 +160,9 @@ impl EpipolarGrid {
         (end > start && high > low).then_some(grid)
     }
 
-    /// As shaders see it.
+    /// As shaders see it, with so many columns of tints a slice.
     #[cfg(feature = "gpu")]
-    pub(crate) fn uniform(&self) -> super::gpu::EpipolarUniform {
+    pub(crate) fn uniform(&self, tint_columns: usize) -> super::gpu::EpipolarUniform {
         let [alpha_start, alpha_step] = self.slices.start_and_step().map(|x| x as f32);
         let floats = |v: DVec3| v.as_vec3().to_array();
         super::gpu::EpipolarUniform {
@@ -176,10 +181,45 @@ impl EpipolarGrid {
             least_off_axis: self.least_off_axis as f32,
             cotangent: self.cotangent as f32,
             tint_start: self.tint_range[0] as f32,
-            tint_step: ((self.tint_range[1] - self.tint_range[0]) / self.samples as f64) as f32,
-            tint_columns: self.samples as u32,
+            tint_step: ((self.tint_range[1] - self.tint_range[0]) / tint_columns as f64) as f32,
+            tint_columns: tint_columns as u32,
             turns: u32::from(self.slices.is_whole_turn()),
         }
+    }
+
+    /// Distance of a local light from the eye [m]; `None`: the sun.
+    pub(crate) fn distance(&self) -> Option<f64> {
+        self.local
+    }
+
+    /// Range of gamma over which tints are summed and the integrand is decomposed.
+    pub(crate) fn tint_range(&self) -> [f64; 2] {
+        self.tint_range
+    }
+
+    /// Angles of a perspective camera's rays to the axis, but for those that have no slice.
+    pub(crate) fn beta_range(&self) -> [f64; 2] {
+        self.beta_range
+    }
+
+    fn betas_seen(&self, scene: &GridScene<'_>) -> [f64; 2] {
+        let camera = scene.camera;
+        let least = self.least_off_axis.asin();
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for (x, y) in picture_grid(scene.size) {
+            let beta = camera.ray_to_far(x, y).direction.angle_between(self.axis);
+            range = [range[0].min(beta), range[1].max(beta)];
+        }
+        if camera.sees(self.axis, 1.0) {
+            range[0] = least;
+        }
+        if camera.sees(-self.axis, 1.0) {
+            range[1] = std::f64::consts::PI - least;
+        }
+        [
+            range[0].max(least),
+            range[1].min(std::f64::consts::PI - least),
+        ]
     }
 
     fn choose_slices(&self, scene: &GridScene<'_>, resolution: &Resolution) -> Slices {
@@ -293,15 +333,8 @@ impl EpipolarGrid {
 
     /// Over a grid of rays from their start to the far plane.
     fn gammas_seen(&self, scene: &GridScene<'_>) -> [f64; 2] {
-        const GRID: u32 = 16;
-        let [width, height] = scene.size.map(f64::from);
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        for i in 0..(GRID + 1).pow(2) {
-            let share = |n: u32| f64::from(n) / f64::from(GRID);
-            let (x, y) = (
-                width * share(i % (GRID + 1)),
-                height * share(i / (GRID + 1)),
-            );
+        for (x, y) in picture_grid(scene.size) {
             let ray = scene.camera.ray_to_far(x, y);
             if let Some(place) = self.ray(&ray) {
                 for s in [0.0, ray.length] {
@@ -373,6 +406,14 @@ impl EpipolarGrid {
         }
         range
     }
+}
+
+/// Points of a picture [pixels], from border to border.
+fn picture_grid([width, height]: [u32; 2]) -> impl Iterator<Item = (f64, f64)> {
+    const GRID: u32 = 16;
+    let place = |n: u32, size: u32| f64::from(n * size) / f64::from(GRID);
+    (0..(GRID + 1).pow(2))
+        .map(move |i| (place(i % (GRID + 1), width), place(i / (GRID + 1), height)))
 }
 
 /// Distance of the origin from a convex quadrilateral, zero inside.

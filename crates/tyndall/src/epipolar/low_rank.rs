@@ -5,7 +5,7 @@ use glam::DVec3;
 use nalgebra::DMatrix;
 
 /// Samples a side of the grid (the paper's).
-const GRID: usize = 64;
+pub(crate) const GRID: usize = 64;
 
 /// The factors of K, per colour channel.
 pub(crate) struct LowRank {
@@ -76,6 +76,30 @@ impl LowRank {
             beta_factors,
             gamma_factors,
         }
+    }
+
+    /// Samples of a term as shaders read them: B, Gamma, and the integral of Gamma from the first sample.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn samples(&self) -> Vec<[f32; 4]> {
+        let mut samples = Vec::new();
+        for (betas, gammas) in self.beta_factors.iter().zip(&self.gamma_factors) {
+            let mut sum = DVec3::ZERO;
+            let mut sums = vec![sum];
+            for pair in gammas.windows(2) {
+                sum += 0.5 * self.gamma.step * (pair[0] + pair[1]);
+                sums.push(sum);
+            }
+            let all = betas.iter().chain(gammas).chain(&sums);
+            samples.extend(all.map(|v| v.extend(0.0).as_vec4().to_array()));
+        }
+        samples
+    }
+
+    /// First sample and distance of samples of beta and gamma.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn axes(&self) -> [f64; 4] {
+        let (beta, gamma) = (self.beta, self.gamma);
+        [beta.start, beta.step, gamma.start, gamma.step]
     }
 
     /// B_i(beta), for each i.

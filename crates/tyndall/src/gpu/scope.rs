@@ -90,6 +90,22 @@ impl LightScope<'_> {
             .buffer(self.device, (Some(self.index), name), bytes, usage)
     }
 
+    /// A storage buffer of this light that holds these values.
+    pub(crate) fn upload<T: bytemuck::Pod>(
+        &mut self,
+        name: &'static str,
+        values: &[T],
+    ) -> wgpu::Buffer {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let key = (Some(self.index), name);
+        let bytes: &[u8] = bytemuck::cast_slice(values);
+        let buffer = self
+            .pool
+            .buffer(self.device, key, bytes.len() as u64, usage);
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    }
+
     /// A texture of this light.
     pub(crate) fn texture(
         &mut self,

@@ -1,9 +1,11 @@
 //! The GPU side: the shadow map's pyramid, the rectified trees, and the pass that traverses them.
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::Params;
+use super::{Integrator, Params, svd};
 use crate::{
+    effect::LightInputs,
     epipolar::{
         gpu::{EPIPOLAR, EpipolarUniform},
         grid::{EpipolarGrid, GridScene},
@@ -17,7 +19,7 @@ use crate::{
         shader::{AIRLIGHT, STRETCH},
     },
     light::LightModel,
-    physics::medium::reals,
+    physics::medium::{Optics, reals},
     shadow::{
         self,
         pyramid::{self, PYRAMID, Source},
@@ -36,15 +38,33 @@ const LEAVES_A_WORKGROUP: u32 = 512;
 const TINT: &str = include_str!("tint.wgsl");
 const TINT_ROWS: &str = include_str!("tint_rows.wgsl");
 const TINT_MEAN: &str = include_str!("tint_mean.wgsl");
+const SVD: &str = include_str!("svd.wgsl");
+const SVD_STRETCH: &str = include_str!("svd_stretch.wgsl");
 const GLASS: &str = include_str!("glass.wgsl");
+
+/// Columns of tints a slice of the svd integrator, whose rows are as many as its terms (Chen 2011, section 4.3).
+const SVD_COLUMNS: usize = 512;
+
+/// `Svd` of `svd.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct SvdUniform {
+    pub(crate) beta_start: f32,
+    pub(crate) beta_step: f32,
+    pub(crate) gamma_start: f32,
+    pub(crate) gamma_step: f32,
+    pub(crate) rank: u32,
+    pad: [u32; 3],
+}
 
 /// The technique's shaders.
 pub(crate) struct Programs {
     pyramid: pyramid::Programs,
     rectify: ComputeProgram,
     rectify_glass: ComputeProgram,
-    tint_rows: ComputeProgram,
-    traverse: ScreenProgram,
+    /// Of the analytic and of the svd integrator.
+    tint_rows: [ComputeProgram; 2],
+    traverse: [ScreenProgram; 2],
 }
 
 impl Programs {
@@ -58,37 +78,47 @@ impl Programs {
             let modules = [EPIPOLAR, PYRAMID, TREE, RECTIFY];
             ComputeProgram::new(device, shared, "rectify", &modules, "rectify", &own)
         };
+        let tint_rows = || {
+            let own = [
+                layout::uniform::<EpipolarUniform>(0),
+                layout::uniform::<SvdUniform>(1),
+                layout::storage(2, true),
+                layout::storage(3, false),
+            ];
+            let modules = [EPIPOLAR, SVD, TINT, TINT_ROWS];
+            ComputeProgram::new(device, shared, "tint rows", &modules, "tint_rows", &own)
+        };
+        let traverse = || {
+            let own = [
+                layout::uniform::<EpipolarUniform>(0),
+                layout::storage(1, true),
+                layout::airlight(2),
+                layout::storage(3, true),
+                layout::storage(4, true),
+                layout::uniform::<SvdUniform>(5),
+                layout::storage(6, true),
+            ];
+            let modules = [
+                AIRLIGHT,
+                STRETCH,
+                EPIPOLAR,
+                WALK,
+                TREE,
+                SVD,
+                TINT,
+                TINT_MEAN,
+                SVD_STRETCH,
+                GLASS,
+                TRAVERSE,
+            ];
+            ScreenProgram::new(device, shared, "traverse", &modules, "traverse", &own)
+        };
         Self {
             pyramid: pyramid::Programs::new(device, shared),
             rectify: rectify(),
             rectify_glass: rectify().with("RECTIFY_GLASS", 1.0),
-            tint_rows: ComputeProgram::new(
-                device,
-                shared,
-                "tint rows",
-                &[EPIPOLAR, TREE, TINT, TINT_ROWS],
-                "tint_rows",
-                &[
-                    layout::uniform::<EpipolarUniform>(0),
-                    layout::storage(1, false),
-                ],
-            ),
-            traverse: ScreenProgram::new(
-                device,
-                shared,
-                "traverse",
-                &[
-                    AIRLIGHT, STRETCH, EPIPOLAR, WALK, TREE, TINT, TINT_MEAN, GLASS, TRAVERSE,
-                ],
-                "traverse",
-                &[
-                    layout::uniform::<EpipolarUniform>(0),
-                    layout::storage(1, true),
-                    layout::airlight(2),
-                    layout::storage(3, true),
-                    layout::storage(4, true),
-                ],
-            ),
+            tint_rows: [0.0, 1.0].map(|svd| tint_rows().with("SVD", svd)),
+            traverse: [0.0, 1.0].map(|svd| traverse().with("SVD", svd)),
         }
     }
 }
@@ -100,9 +130,15 @@ pub(crate) fn passes(
     scope: &mut LightScope<'_>,
 ) -> Vec<Pass> {
     let grid = grid(params, scope);
-    let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| grid.uniform());
+    let is_svd = params.integrator == Integrator::Svd;
+    let columns = |grid: &EpipolarGrid| if is_svd { SVD_COLUMNS } else { grid.samples };
+    let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| grid.uniform(columns(&grid)));
     let uniform = scope.uniform("epipolar grid", &epipolar);
-    let bytes = Bytes::new(&epipolar, scope);
+    let rank = if is_svd { params.rank } else { 1 };
+    let is_spot = matches!(scope.light.emitter, Emitter::Spot { .. });
+    let is_summed = scope.inputs.texture.is_some() || (is_svd && is_spot);
+    let bytes = Bytes::new(&epipolar, &scope.inputs, is_summed.then_some(rank));
+    let (svd, svd_factors) = svd(scope, grid.as_ref().filter(|_| is_svd), params.rank);
     let nodes = scope.storage("min-max nodes", bytes.nodes);
     let tint_sums = scope.storage("tint sums", bytes.tint_sums);
     let glass_nodes = scope.storage("glass nodes", bytes.glass_nodes);
@@ -121,10 +157,12 @@ pub(crate) fn passes(
                 ));
             }
         }
-        if inputs.texture.is_some() {
-            let resources = [&uniform, &tint_sums].map(|b| b.as_entire_binding());
-            let groups = [epipolar.slices, 1, 1];
-            passes.push(scope.compute(&programs.tint_rows, "sum up picture", &resources, groups));
+        if is_summed {
+            let resources =
+                [&uniform, &svd, &svd_factors, &tint_sums].map(|b| b.as_entire_binding());
+            let program = &programs.tint_rows[usize::from(is_svd)];
+            let groups = [epipolar.slices, rank, 1];
+            passes.push(scope.compute(program, "sum up picture", &resources, groups));
         }
     }
     let airlight = scope.airlight();
@@ -134,9 +172,38 @@ pub(crate) fn passes(
         wgpu::BindingResource::TextureView(&airlight),
         tint_sums.as_entire_binding(),
         glass_nodes.as_entire_binding(),
+        svd.as_entire_binding(),
+        svd_factors.as_entire_binding(),
     ];
-    passes.push(scope.full_screen(&programs.traverse, "traverse", &resources));
+    let program = &programs.traverse[usize::from(is_svd)];
+    passes.push(scope.full_screen(program, "traverse", &resources));
     passes
+}
+
+/// Uniform and samples of the svd integrator; nothing for the analytic one.
+fn svd(
+    scope: &mut LightScope<'_>,
+    grid: Option<&EpipolarGrid>,
+    rank: u32,
+) -> (wgpu::Buffer, wgpu::Buffer) {
+    let Some(grid) = grid else {
+        let none = scope.uniform("svd", &SvdUniform::zeroed());
+        return (none, scope.storage("svd factors", 16));
+    };
+    let optics = Optics::new(&scope.frame.medium);
+    let factors = svd::factors(grid, &optics, rank as usize);
+    let [beta_start, beta_step, gamma_start, gamma_step] = factors.axes().map(|x| x as f32);
+    let uniform = SvdUniform {
+        beta_start,
+        beta_step,
+        gamma_start,
+        gamma_step,
+        rank,
+        pad: [0; 3],
+    };
+    let samples = factors.samples();
+    let uniform = scope.uniform("svd", &uniform);
+    (uniform, scope.upload("svd factors", &samples))
 }
 
 /// The passes that make trees of a picture the light sees, of `size` texels a face.
@@ -172,18 +239,16 @@ struct Bytes {
 }
 
 impl Bytes {
-    fn new(grid: &EpipolarUniform, scope: &LightScope<'_>) -> Self {
+    /// `sums` is the number of rows of tints a slice.
+    fn new(grid: &EpipolarUniform, inputs: &LightInputs<'_>, sums: Option<u32>) -> Self {
         let slices = u64::from(grid.slices);
         let if_used = |used: bool, bytes: u64| if used { bytes } else { 16 };
         // Two 16-bit numbers a node, twice as many nodes as leaves.
         let nodes = 8 * slices * u64::from(grid.samples);
-        let inputs = &scope.inputs;
+        let columns = u64::from(grid.tint_columns) + 1;
         Self {
             nodes: if_used(inputs.shadow_map.is_some(), nodes),
-            tint_sums: if_used(
-                inputs.texture.is_some(),
-                16 * slices * (u64::from(grid.tint_columns) + 1),
-            ),
+            tint_sums: sums.map_or(16, |rows| 16 * slices * columns * u64::from(rows)),
             glass_nodes: if_used(inputs.glass.is_some(), nodes),
         }
     }

@@ -24,10 +24,11 @@
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
+mod svd;
 
 use super::{
     Backends, LightKind, Technique, TechniqueInfo,
-    params::{Param, Parameters, Sliced, Slicing},
+    params::{Param, Parameters, Sliced, Slicing, Value, word},
 };
 use crate::epipolar::Resolution;
 
@@ -41,11 +42,38 @@ pub(super) const INFO: TechniqueInfo = TechniqueInfo {
     default: || Technique::MinMax(Params::default()),
 };
 
+/// How lit stretches are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// In closed form, or by quadrature where the light has a cone or a picture.
+    #[default]
+    Analytic,
+    /// By the singular value decomposition of the integrand without visibility.
+    Svd,
+}
+
+const INTEGRATORS: &[(&str, Integrator)] =
+    &[("analytic", Integrator::Analytic), ("svd", Integrator::Svd)];
+
 /// Parameters of `min-max`.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// Slices and samples.
     pub resolution: Resolution,
+    /// How lit stretches are integrated.
+    pub integrator: Integrator,
+    /// Terms of the `svd` integrator (1 to 16).
+    pub rank: u32,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            resolution: Resolution::default(),
+            integrator: Integrator::default(),
+            rank: 4,
+        }
+    }
 }
 
 impl Sliced for Params {

@@ -5,20 +5,20 @@ const TINT_BLOCK_DEPTH: f32 = 0.1;
 const TINT_BLOCK_ANGLE: f32 = 0.02;
 const TINT_MAX_BLOCKS: f32 = 256.0;
 
-fn tint_row_sum(e: Epipolar, slice: u32, column: f32) -> vec3f {
+fn tint_row_sum(e: Epipolar, slice: u32, term: u32, column: f32) -> vec3f {
     let border = min(floor(column), f32(e.tint_columns) - 1.0);
-    let at = tint_index(e, slice, u32(border));
+    let at = tint_index(e, slice, term, u32(border));
     return mix(tint_sums[at].rgb, tint_sums[at + 1u].rgb, column - border);
 }
 
 // Between the middles of two slices.
-fn tint_sum(e: Epipolar, r: EpipolarRay, column: f32) -> vec3f {
+fn tint_sum(e: Epipolar, r: EpipolarRay, term: u32, column: f32) -> vec3f {
     let place = r.place - 0.5;
     let last = e.slices - 1u;
     let whole_turn = e.turns == 1u;
     let below = select(u32(max(place, 0.0)), last, whole_turn && place < 0.0);
     let above = select(min(u32(max(place + 1.0, 0.0)), last), 0u, whole_turn && place + 1.0 > f32(last) + 0.999999);
-    return mix(tint_row_sum(e, below, column), tint_row_sum(e, above, column), place - floor(place));
+    return mix(tint_row_sum(e, below, term, column), tint_row_sum(e, above, term, column), place - floor(place));
 }
 
 // The light of a lit stretch, but for the common factor: blocks of gamma, in which the light but for its picture
@@ -34,7 +34,7 @@ fn tint_stretch(e: Epipolar, ray: Ray, r: EpipolarRay, a: f32, b: f32) -> vec3f 
     let narrow = width < 1.0 || r.off_axis <= e.least_off_axis;
     var sum = vec3f(0.0);
     var start = a;
-    var below = tint_sum(e, r, columns.x);
+    var below = tint_sum(e, r, 0u, columns.x);
     for (var i = 1.0; i <= blocks; i += 1.0) {
         let column = columns.x + i * width;
         var end = a + (b - a) * i / blocks;
@@ -42,7 +42,7 @@ fn tint_stretch(e: Epipolar, ray: Ray, r: EpipolarRay, a: f32, b: f32) -> vec3f 
             end = epipolar_crossing(r, e.tint_start + column * e.tint_step);
         }
         end = select(clamp(end, start, b), b, i == blocks);
-        let above = tint_sum(e, r, column);
+        let above = tint_sum(e, r, 0u, column);
         let middle = light_ray_tint(ray.origin + 0.5 * (start + end) * ray.direction);
         sum += select((above - below) / max(width, 1e-3), middle, narrow) * tint_even(ray, start, end);
         below = above;

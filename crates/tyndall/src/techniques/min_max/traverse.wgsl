@@ -10,6 +10,8 @@
 @group(2) @binding(2) var airlight_table: texture_2d_array<f32>;
 @group(2) @binding(3) var<storage, read> tint_sums: array<vec4f>;
 @group(2) @binding(4) var<storage, read> glass_nodes: array<u32>;
+@group(2) @binding(5) var<uniform> svd: Svd;
+@group(2) @binding(6) var<storage, read> svd_factors: array<vec4f>;
 
 // Lit stretches that are kept before they are integrated.
 const TRAVERSE_STRETCHES: u32 = 8u;
@@ -20,7 +22,8 @@ struct TraverseRay {
     span: vec2f, // that the light reaches [m]
     place: EpipolarRay,
     slice: u32,
-    has_leaves: bool, // none for rays along the axis, or where there are no shadows: they are walked from end to end
+    has_slice: bool, // none along the axis
+    has_leaves: bool, // none where there are no shadows, either: rays are walked from end to end
     end_leaf: u32, // one past the last leaf that lies wholly within the span
     map_ray: ShadowRay,
 }
@@ -60,11 +63,12 @@ fn traverse_light(ray: Ray) -> vec3f {
     let place = epipolar_ray(epipolar, ray);
     let gammas = vec2f(epipolar_gamma(place, span.x), epipolar_gamma(place, span.y));
     let ends = (gammas - epipolar.gamma_start) / epipolar.gamma_step;
-    let has_leaves = SHADOW_KIND != SHADOW_NONE && place.off_axis > epipolar.least_off_axis;
+    let has_slice = place.off_axis > epipolar.least_off_axis;
+    let has_leaves = SHADOW_KIND != SHADOW_NONE && has_slice;
     let leaves = select(0.0, f32(epipolar.samples), has_leaves);
     let first = u32(clamp(ceil(ends.x), 0.0, leaves));
     let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
-    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_leaves, end_leaf, shadow_ray(ray));
+    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_slice, has_leaves, end_leaf, shadow_ray(ray));
 
     // What comes before the first leaf is walked.
     let walk_end = select(span.y, traverse_leaf(view, first), has_leaves);
@@ -203,7 +207,10 @@ fn traverse_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
 
 // The same where there is no coloured glass before it.
 fn traverse_clear(view: TraverseRay, a: f32, b: f32) -> vec3f {
-    if tint_has_picture() {
+    if SVD && view.has_slice {
+        return svd_stretch(epipolar, view.place, a, b);
+    }
+    if tint_is_summed() {
         return tint_stretch(epipolar, view.ray, view.place, a, b);
     }
     if light_is_local() {
