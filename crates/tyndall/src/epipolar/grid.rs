@@ -28,6 +28,9 @@ use crate::{
 /// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
 const DEFAULT_SLICES: usize = 1024;
 
+/// View rays nearer to the axis are not decomposed: `SVD_LEAST_SINE` of `svd_stretch.wgsl`.
+const SVD_LEAST_SINE: f64 = 0.1;
+
 /// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".
 const STEPS: f64 = 65533.0;
 
@@ -197,14 +200,14 @@ impl EpipolarGrid {
         self.tint_range
     }
 
-    /// Angles of a perspective camera's rays to the axis, but for those that have no slice.
+    /// Angles to the axis of a perspective camera's rays whose integrand is decomposed.
     pub(crate) fn beta_range(&self) -> [f64; 2] {
         self.beta_range
     }
 
     fn betas_seen(&self, scene: &GridScene<'_>) -> [f64; 2] {
         let camera = scene.camera;
-        let least = self.least_off_axis.asin();
+        let least = self.least_off_axis.max(SVD_LEAST_SINE).asin();
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for (x, y) in picture_grid(scene.size) {
             let beta = camera.ray_to_far(x, y).direction.angle_between(self.axis);

@@ -88,5 +88,29 @@ impl Sliced for Params {
 
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
-    const PARAMS: &'static [&'static [Param<Self>]] = &[Slicing::<Self>::PARAMS];
+    const PARAMS: &'static [&'static [Param<Self>]] = &[
+        &[
+            Param {
+                key: "integrator",
+                about: "how lit stretches are integrated",
+                range: "\"analytic\" or \"svd\"",
+                get: |p| word(&p.integrator, INTEGRATORS),
+                set: |p, v| {
+                    p.integrator = v.choice(INTEGRATORS)?;
+                    Some(())
+                },
+            },
+            Param {
+                key: "rank",
+                about: "terms of the svd integrator",
+                range: "a whole number from 1 to 16",
+                get: |p| Value::Integer(p.rank.into()),
+                set: |p, v| {
+                    p.rank = v.integer(1..=16)?;
+                    Some(())
+                },
+            },
+        ],
+        Slicing::<Self>::PARAMS,
+    ];
 }

@@ -1,5 +1,8 @@
 // The light of a lit stretch by the svd integrator, but for the common factor.
 
+// Nearer to the axis than a tenth of a radian few terms do not hold exp(-sigma_t gamma / sin beta).
+const SVD_LEAST_SINE: f32 = 0.1;
+
 fn svd_stretch(e: Epipolar, r: EpipolarRay, a: f32, b: f32) -> vec3f {
     let gammas = vec2f(epipolar_gamma(r, a), epipolar_gamma(r, b));
     let beta = atan2(r.c.y, r.t.y);

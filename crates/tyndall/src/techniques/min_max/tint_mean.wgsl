@@ -30,16 +30,17 @@ fn tint_stretch(e: Epipolar, ray: Ray, r: EpipolarRay, a: f32, b: f32) -> vec3f 
     let blocks = clamp(ceil(max(sigma_t * (b - a) / TINT_BLOCK_DEPTH, angle)), 1.0, TINT_MAX_BLOCKS);
     let columns = clamp((gammas - e.tint_start) / e.tint_step, vec2f(0.0), vec2f(f32(e.tint_columns)));
     let width = (columns.y - columns.x) / blocks;
-    // Within a column, and along the axis, the picture itself.
-    let narrow = width < 1.0 || r.off_axis <= e.least_off_axis;
+    // Within a column, along the axis, and where the sums are the svd integrator's: the picture itself.
+    let has_slice = r.off_axis > e.least_off_axis;
+    let narrow = SVD || width < 1.0 || !has_slice;
     var sum = vec3f(0.0);
     var start = a;
     var below = tint_sum(e, r, 0u, columns.x);
     for (var i = 1.0; i <= blocks; i += 1.0) {
         let column = columns.x + i * width;
         var end = a + (b - a) * i / blocks;
-        if light_is_local() && !narrow {
-            end = epipolar_crossing(r, e.tint_start + column * e.tint_step);
+        if light_is_local() && has_slice {
+            end = epipolar_crossing(r, mix(gammas.x, gammas.y, i / blocks));
         }
         end = select(clamp(end, start, b), b, i == blocks);
         let above = tint_sum(e, r, 0u, column);

@@ -22,8 +22,7 @@ struct TraverseRay {
     span: vec2f, // that the light reaches [m]
     place: EpipolarRay,
     slice: u32,
-    has_slice: bool, // none along the axis
-    has_leaves: bool, // none where there are no shadows, either: rays are walked from end to end
+    has_leaves: bool, // none along the axis, or where there are no shadows: rays are walked from end to end
     end_leaf: u32, // one past the last leaf that lies wholly within the span
     map_ray: ShadowRay,
 }
@@ -68,7 +67,7 @@ fn traverse_light(ray: Ray) -> vec3f {
     let leaves = select(0.0, f32(epipolar.samples), has_leaves);
     let first = u32(clamp(ceil(ends.x), 0.0, leaves));
     let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
-    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_slice, has_leaves, end_leaf, shadow_ray(ray));
+    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_leaves, end_leaf, shadow_ray(ray));
 
     // What comes before the first leaf is walked.
     let walk_end = select(span.y, traverse_leaf(view, first), has_leaves);
@@ -207,7 +206,7 @@ fn traverse_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
 
 // The same where there is no coloured glass before it.
 fn traverse_clear(view: TraverseRay, a: f32, b: f32) -> vec3f {
-    if SVD && view.has_slice {
+    if SVD && view.place.off_axis > max(SVD_LEAST_SINE, epipolar.least_off_axis) {
         return svd_stretch(epipolar, view.place, a, b);
     }
     if tint_is_summed() {
