@@ -5,6 +5,7 @@
 //! `gamma` the light ray: its distance from the axis [m] (sun), or its angle at the light from the axis [rad].
 //! With half-planes neither beta nor gamma changes sign.
 
+pub(crate) mod cells;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 pub(crate) mod grid;
