@@ -30,6 +30,13 @@ use crate::{
 /// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
 const DEFAULT_SLICES: usize = 1024;
 
+
+/// Columns of tints a slice: `TINT_COLUMNS` of `tint.wgsl`.
+pub(crate) const TINT_COLUMNS: f64 = 1024.0;
+
+/// A slice's turn about the axis [rad] that the bounds of its cells still hold for.
+const WIDEST_SLICE: f64 = 0.25;
+
 /// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".
 const STEPS: f64 = 65533.0;
 
@@ -248,7 +255,14 @@ impl EpipolarGrid {
             0 => SliceCount::AtMost(DEFAULT_SLICES),
             n => SliceCount::Exactly(n as usize),
         };
-        Slices::over(alpha_at, turns, axis_in_picture, scene.size, count)
+        let slices = |count| Slices::over(alpha_at, turns, axis_in_picture, scene.size, count);
+        let chosen = slices(count);
+        let [_, step] = chosen.start_and_step();
+        if turns && step > WIDEST_SLICE {
+            let least = (chosen.count as f64 * step / WIDEST_SLICE).ceil();
+            return slices(SliceCount::Exactly(least as usize));
+        }
+        chosen
     }
 
     fn alpha(&self, ray: &Ray) -> f64 {
@@ -503,3 +517,6 @@ fn distance_to_quad(corners: [[f64; 2]; 4]) -> f64 {
     };
     edges().map(to_edge).fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests;

@@ -129,10 +129,10 @@ mod tests {
         };
         for (size, reversed_depth) in [([37, 21], true), ([64, 64], false), ([1, 1], true)] {
             let count = 6 * size[0] as usize * size[1] as usize;
-            let depth = in_box(1, count, [0.0..=1.0])[2..].iter().map(|x| x[0]);
+            let depth = in_box(1, count, [0.0..=1.0]).into_iter().skip(2);
             let map = ShadowMap {
                 size,
-                depth: depth.collect(),
+                depth: depth.map(|x| x[0]).collect(),
             };
             let inputs = CpuLightInputs {
                 shadow_map: Some(&map),

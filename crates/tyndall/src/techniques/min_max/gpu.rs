@@ -26,8 +26,8 @@ use crate::{
     validate,
 };
 
-const TREE: &str = include_str!("tree.wgsl");
-const RECTIFY: &str = include_str!("rectify.wgsl");
+pub(crate) const TREE: &str = include_str!("tree.wgsl");
+pub(crate) const RECTIFY: &str = include_str!("rectify.wgsl");
 const TRAVERSE: &str = include_str!("traverse.wgsl");
 const WALK: &str = include_str!("../../shadow/walk.wgsl");
 
