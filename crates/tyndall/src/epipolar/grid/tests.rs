@@ -92,7 +92,7 @@ impl Case {
                 far: 30.0,
             };
         }
-        let reversed_depth = i % 2 == 0;
+        let reversed_depth = i.is_multiple_of(2);
         let (emitter, shadow) = lights(
             kind,
             eye + distance * to_light,

@@ -119,7 +119,7 @@ fn twins_ray(x: array<f32, 5>) -> vec4f {
     let r = epipolar_ray(grid, ray);
     let sample = (epipolar_gamma(r, x[2] * ray.length) - grid.gamma_start) / grid.gamma_step;
     let crossing = epipolar_crossing(r, grid.gamma_start + floor(sample) * grid.gamma_step);
-    return vec4f(f32(r.slice), r.b, sample, crossing / ray.length + 0.0 * used);
+    return vec4f(f32(epipolar_slice(grid, r)), r.b, sample, crossing / ray.length + 0.0 * used);
 }
 fn twins_shadow(x: array<f32, 5>) -> vec4f {
     let ray = camera_ray(vec2f(x[0], x[1]), 0.0);
