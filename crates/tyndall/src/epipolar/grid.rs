@@ -30,10 +30,6 @@ use crate::{
 /// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
 const DEFAULT_SLICES: usize = 1024;
 
-
-/// Columns of tints a slice: `TINT_COLUMNS` of `tint.wgsl`.
-pub(crate) const TINT_COLUMNS: f64 = 1024.0;
-
 /// A slice's turn about the axis [rad] that the bounds of its cells still hold for.
 const WIDEST_SLICE: f64 = 0.25;
 
