@@ -53,7 +53,7 @@ impl Blocks {
         Self {
             frame: uniform(bytes_of(&FrameUniform::new(&frame, &rays, SIZE))),
             light: uniform(bytes_of(&light)),
-            grid: uniform(bytes_of(&grid.uniform())),
+            grid: uniform(bytes_of(&grid.uniform(64))),
             variant,
         }
     }
@@ -233,8 +233,8 @@ fn pyramid(gpu: &TestDevice, shadows: &Shadows<'_>) -> wgpu::TextureView {
     })
 }
 
-/// A shadow map of which nothing but its size is read.
-fn sized_map(gpu: &TestDevice) -> wgpu::TextureView {
+/// A shadow map, or its glass, of which nothing but the size is read.
+fn sized_map(gpu: &TestDevice, format: wgpu::TextureFormat) -> wgpu::TextureView {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: wgpu::Extent3d {
@@ -245,7 +245,7 @@ fn sized_map(gpu: &TestDevice) -> wgpu::TextureView {
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Depth32Float,
+        format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
@@ -261,7 +261,8 @@ fn the_gpus_cells_hold_every_light_ray_in_them() {
     let Some(gpu) = device_or_skip("rectify.wgsl") else {
         return;
     };
-    let map = sized_map(gpu);
+    let map = sized_map(gpu, wgpu::TextureFormat::Depth32Float);
+    let glass = sized_map(gpu, wgpu::TextureFormat::Rg32Uint);
     let mut tightness = Tightness::default();
     for (i, case) in Case::many(90).enumerate() {
         let Some(grid) = case.grid([3, 40, 300][i % 3]) else {
@@ -279,7 +280,7 @@ fn the_gpus_cells_hold_every_light_ray_in_them() {
         let found = Blocks::new(gpu, &case, &grid).evaluate(
             gpu,
             &[PYRAMID, TREE, RECTIFY, CELL],
-            &[(11, &map), (21, &pyramid(gpu, &shadows))],
+            &[(11, &map), (12, &glass), (21, &pyramid(gpu, &shadows))],
             // As in the pass, one level for all: not every driver takes a level of each thread's own.
             &format!("cell_of(x, {}u)", i / 3 % 3),
             &inputs,
