@@ -248,15 +248,21 @@ fn fine(extra: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
     fine.iter().chain(extra).cloned().collect()
 }
 
-/// With slices and samples far finer than the map, epipolar coordinates leave nothing but the map's own shadows.
+/// Whatever the number of slices and samples: what leaves cannot tell is walked.
 #[test]
-fn min_max_converges_to_the_reference() {
+fn min_max_is_the_reference() {
+    let coarse = [
+        ("slices", Value::Integer(50)),
+        ("samples", Value::Integer(64)),
+    ];
     for stage in stages() {
         let truth = stage.on_cpu(reference());
-        let found = stage.on_cpu(technique("min-max", &fine(&[])));
-        let error = compare(&found, &truth).expect("same size").rel_mae;
-        // What is left is the samples' width at shadow borders.
-        assert!(error < 0.003, "{}: {error}", stage.name);
+        for params in [&[][..], &coarse] {
+            let found = stage.on_cpu(technique("min-max", params));
+            let error = compare(&found, &truth).expect("same size").rel_mae;
+            // The quadrature's own tolerance of 1e-3.
+            assert!(error < 1e-3, "{}, {params:?}: {error}", stage.name);
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod fit;
 mod paper;
+mod poses;
 mod scaling;
 mod subject;
 mod table;
@@ -34,6 +35,7 @@ use table::Table;
 enum Tables {
     Paper(Paper),
     Scaling,
+    Poses,
 }
 
 /// Tables that belong together.
@@ -45,7 +47,7 @@ struct Suite {
 
 const PICTURE: [u32; 2] = [1280, 960];
 
-const SUITES: [Suite; 6] = [
+const SUITES: [Suite; 7] = [
     Suite {
         name: "chen",
         about: "Chen et al. 2011, tables 1 and 2",
@@ -118,6 +120,11 @@ const SUITES: [Suite; 6] = [
         about: "time and bytes against pixels, texels, triangles and each technique's own fineness",
         tables: Tables::Scaling,
     },
+    Suite {
+        name: "poses",
+        about: "min-max from random places: its largest errors beside brute force's",
+        tables: Tables::Poses,
+    },
 ];
 
 /// What all suites share.
@@ -164,6 +171,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         let report = match &suite.tables {
             Tables::Paper(paper) => paper::run(paper, &bench, &mut stages)?,
             Tables::Scaling => scaling::run(&bench, &mut stages)?,
+            Tables::Poses => poses::run(poses::POSES, &bench, &mut stages)?,
         };
         print(&report.to_text(suite, start.elapsed()))?;
         suites.push(report.to_json(suite));

@@ -91,3 +91,24 @@ fn a_report_says_what_it_is_and_what_is_missing() {
             .any(|line| line == &("adapter", "none: the CPU".to_owned()))
     );
 }
+
+/// A handful of places a scene; the suite itself takes 500.
+#[test]
+fn no_place_makes_min_max_as_wrong_as_brute_force() {
+    let bench = Bench {
+        backend: Backend::choose(BackendChoice::Auto, Technique::default().info()).unwrap(),
+        assets: subject::find_assets(),
+    };
+    if bench.assets.is_none() {
+        eprintln!("skipped: box-wall.glb, which is not among the assets");
+    }
+    let report = poses::run(5, &bench, &mut Stages::default()).unwrap();
+    let table = report.tables[0].to_json();
+    let rows = table["rows"].as_array().unwrap();
+    assert!(rows.len() >= 3, "{table:#}");
+    for row in rows {
+        assert_eq!(row["not finite"], 0, "{row:#}");
+        assert_eq!(row["pixels over twice the p99"], 0, "{row:#}");
+        assert!(row["p99 of brute force"].as_f64().unwrap() > 0.0, "{row:#}");
+    }
+}

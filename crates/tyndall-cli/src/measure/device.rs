@@ -1,8 +1,12 @@
 //! The stage's GPU side.
 
-use std::time::Instant;
+use std::{borrow::Cow, time::Instant};
 
-use tyndall::{Effect, EffectView, FrameInputs, frame::Frame, techniques::Technique};
+use tyndall::{
+    Effect, EffectView, FrameInputs,
+    frame::{Camera, Frame},
+    techniques::Technique,
+};
 use tyndall_scene::gpu::readback;
 use wgpu::{CommandEncoder, PollType};
 
@@ -19,7 +23,7 @@ use crate::{
 
 /// A shot on a device, its depth buffer and shadow maps drawn.
 pub(super) struct DeviceStage<'a> {
-    setup: &'a Setup,
+    setup: Cow<'a, Setup>,
     gpu: &'a Gpu,
     world: World,
     effect: Effect,
@@ -49,7 +53,7 @@ impl<'a> DeviceStage<'a> {
         world.draw_g_buffer(setup, &mut encoder, timestamps.timer());
         finish(gpu, encoder, &timestamps)?;
         Ok(Self {
-            setup,
+            setup: Cow::Borrowed(setup),
             gpu,
             effect: new_effect(&gpu.device, format)?,
             limit: Limit::new(&gpu.device, &world),
@@ -65,6 +69,17 @@ impl<'a> DeviceStage<'a> {
 
     pub(super) fn read(&self) -> Result<Buffers, Failure> {
         self.gpu.errors.else_result(self.world.read(self.gpu))
+    }
+
+    /// Draws the depth buffer of another camera.
+    pub(super) fn look_from(&mut self, camera: Camera) -> Result<(), Failure> {
+        self.setup.to_mut().frame.camera = camera;
+        let mut timestamps = Timestamps::new(&self.gpu.device);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.world
+            .draw_g_buffer(&self.setup, &mut encoder, timestamps.timer());
+        let done = finish(self.gpu, encoder, &timestamps);
+        self.gpu.errors.else_result(done)
     }
 
     pub(super) fn technique(

@@ -1,10 +1,10 @@
 //! A shot set up once, and whatever is measured on it.
 
-use std::{cell::OnceCell, time::Instant};
+use std::{borrow::Cow, cell::OnceCell, time::Instant};
 
 use tyndall::{
     cpu::CpuLightInputs,
-    frame::Frame,
+    frame::{Camera, Frame},
     techniques::{Backends, LightKind, TABLE, Technique, TechniqueInfo, reference},
 };
 
@@ -17,7 +17,12 @@ use crate::{
     failure::Failure,
     picture::Picture,
     progress::Stages,
-    render::{Backend, Buffers, cpu, gpu::Timestamps, reads_shadow_maps},
+    render::{
+        Backend, Buffers,
+        cpu::{self, depth},
+        gpu::Timestamps,
+        reads_shadow_maps,
+    },
     setup::Setup,
 };
 
@@ -45,7 +50,7 @@ impl Place {
 
 /// A shot whose scene is loaded and whose depth buffer and shadow maps are drawn.
 pub struct Stage<'a> {
-    setup: &'a Setup,
+    setup: Cow<'a, Setup>,
     drawn: Drawn<'a>,
 }
 
@@ -74,12 +79,33 @@ impl<'a> Stage<'a> {
             }
             Backend::Cpu => Drawn::Cpu(Buffers::trace(setup, stages)),
         };
-        Ok(Self { setup, drawn })
+        Ok(Self {
+            setup: Cow::Borrowed(setup),
+            drawn,
+        })
     }
 
     /// The shot.
     pub fn setup(&self) -> &Setup {
-        self.setup
+        &self.setup
+    }
+
+    /// Draws, or traces, the depth buffer of another camera; the shadow maps stay.
+    ///
+    /// # Errors
+    /// [`Failure::Device`] where the GPU fails.
+    pub fn look_from(&mut self, camera: Camera) -> Result<(), Failure> {
+        self.setup.to_mut().frame.camera = camera;
+        match &mut self.drawn {
+            Drawn::Gpu(device, read) => {
+                *read = OnceCell::new();
+                device.look_from(camera)
+            }
+            Drawn::Cpu(buffers) => {
+                buffers.depth = depth(&self.setup, &|_, _| ());
+                Ok(())
+            }
+        }
     }
 
     /// Each GPU pass that drew the shadow maps and the depth buffer, and its time [ms], of one frame.
@@ -181,9 +207,13 @@ impl<'a> Stage<'a> {
         }
     }
 
-    fn in_scatter_on_cpu(&self, technique: &Technique) -> Result<Picture, Failure> {
+    /// As [`Stage::in_scatter`], on the CPU wherever else the technique could run.
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`Stage::in_scatter`].
+    pub fn in_scatter_on_cpu(&self, technique: &Technique) -> Result<Picture, Failure> {
         let buffers = self.buffers()?;
-        let mut lights = cpu::light_inputs(self.setup, &buffers.lights);
+        let mut lights = cpu::light_inputs(&self.setup, &buffers.lights);
         if !reads_shadow_maps(technique) {
             for light in &mut lights {
                 *light = CpuLightInputs {
@@ -196,7 +226,7 @@ impl<'a> Stage<'a> {
             technique: technique.clone(),
             ..self.setup.frame.clone()
         };
-        let pixels = cpu::in_scatter(self.setup, frame, &buffers.depth, &lights, &|_, _| ())?;
+        let pixels = cpu::in_scatter(&self.setup, frame, &buffers.depth, &lights, &|_, _| ())?;
         Ok(Picture {
             size: self.setup.size,
             pixels,

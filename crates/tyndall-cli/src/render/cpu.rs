@@ -73,15 +73,19 @@ pub(crate) struct Buffers {
 impl Buffers {
     /// Casts the rays of the camera and of every light.
     pub(crate) fn trace(setup: &Setup, stages: &mut Stages) -> Self {
-        let (camera, size) = (&setup.frame.camera, setup.size);
-        let g_buffer = stages.run("trace depth", |progress| {
-            setup.tracer.g_buffer(camera, size, progress)
-        });
         Self {
-            depth: g_buffer.depth,
+            depth: stages.run("trace depth", |progress| depth(setup, progress)),
             lights: LightMaps::trace_all(setup, Needs::IN_SCATTER, stages),
         }
     }
+}
+
+/// What a depth buffer holds, by the rays of the camera.
+pub(crate) fn depth(setup: &Setup, progress: Progress<'_>) -> Vec<f32> {
+    let g_buffer = setup
+        .tracer
+        .g_buffer(&setup.frame.camera, setup.size, progress);
+    g_buffer.depth
 }
 
 /// What a light sees; nothing where nobody asks.

@@ -13,6 +13,8 @@
 //! that ends has an S such that a point on it is lit iff b < S (Chen 2011, section 3.2). Angles b are measured on a
 //! scale that grows with the angle and takes one division, [`angle_scale`].
 
+use std::f64::consts::FRAC_PI_2;
+
 use glam::DVec3;
 
 use super::{
@@ -31,8 +33,14 @@ const DEFAULT_SLICES: usize = 1024;
 /// View rays nearer to the axis are not decomposed: `SVD_LEAST_SINE` of `svd_stretch.wgsl`.
 const SVD_LEAST_SINE: f64 = 0.1;
 
+/// A slice's turn about the axis [rad] that the bounds of its cells still hold for.
+const WIDEST_SLICE: f64 = 0.25;
+
 /// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".
 const STEPS: f64 = 65533.0;
+
+/// Farther than anything [m].
+const FAR: f64 = 1e30;
 
 /// A camera's slices of one light.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +50,10 @@ pub(crate) struct EpipolarGrid {
     orthographic: bool,
     /// Distance of a local light from the eye [m]; `None`: the sun.
     local: Option<f64>,
+    /// Where view rays are measured from: the eye; orthographic and local: the light.
     origin: DVec3,
+    /// A local light's position; unused for the sun.
+    light: DVec3,
     axis: DVec3,
     across: [DVec3; 2],
     pub(crate) slices: Slices,
@@ -78,7 +89,6 @@ pub(crate) struct GridRay {
     pub(crate) slice: usize,
     /// On the scale of the nodes.
     pub(crate) b: f64,
-    off_axis: f64,
     /// Across the axis at distance s: `c[0] + s c[1]`.
     c: [f64; 2],
     /// From the light back along the axis at distance s: `t[0] - s t[1]`.
@@ -125,14 +135,20 @@ impl EpipolarGrid {
         } else {
             camera.pixel_angle().sin()
         };
+        let light = match scene.light {
+            LightSource::Position(position) => position.into(),
+            LightSource::Direction(_) => DVec3::ZERO,
+        };
         let mut grid = Self {
             cotangent: camera.forward.dot(axis) / camera.forward.dot(across[0]),
             orthographic,
             local,
-            origin: match scene.light {
-                LightSource::Position(position) if orthographic => position.into(),
-                _ => camera.eye,
+            origin: if orthographic && local.is_some() {
+                light
+            } else {
+                camera.eye
             },
+            light,
             axis,
             across,
             slices: Slices::over(|x, _| x, false, false, scene.size, SliceCount::Exactly(1)),
@@ -238,7 +254,14 @@ impl EpipolarGrid {
             0 => SliceCount::AtMost(DEFAULT_SLICES),
             n => SliceCount::Exactly(n as usize),
         };
-        Slices::over(alpha_at, turns, axis_in_picture, scene.size, count)
+        let slices = |count| Slices::over(alpha_at, turns, axis_in_picture, scene.size, count);
+        let chosen = slices(count);
+        let [_, step] = chosen.start_and_step();
+        if turns && step > WIDEST_SLICE {
+            let least = (chosen.count as f64 * step / WIDEST_SLICE).ceil();
+            return slices(SliceCount::Exactly(least as usize));
+        }
+        chosen
     }
 
     fn alpha(&self, ray: &Ray) -> f64 {
@@ -280,7 +303,6 @@ impl EpipolarGrid {
         (off_axis > self.least_off_axis).then_some(GridRay {
             slice,
             b: (b - self.b_start) * self.b_scale,
-            off_axis,
             c,
             t,
         })
@@ -318,6 +340,66 @@ impl EpipolarGrid {
     /// gamma at the border before a sample.
     pub(crate) fn gamma(&self, sample: usize) -> f64 {
         self.gamma_start + sample as f64 * self.gamma_step
+    }
+
+    /// True of a light with a position.
+    pub(crate) fn is_local(&self) -> bool {
+        self.local.is_some()
+    }
+
+    /// A light ray of a slice: a point on it, and the way it travels. Of the sun, the point where the slice's gamma is
+    /// measured.
+    pub(crate) fn light_ray(&self, alpha: f64, gamma: f64) -> (DVec3, DVec3) {
+        if self.orthographic && self.local.is_none() {
+            let [x, y] = self.across;
+            return (self.origin + gamma * x + alpha * y, -self.axis);
+        }
+        let outward = alpha.cos() * self.across[0] + alpha.sin() * self.across[1];
+        match self.local {
+            None => (self.origin + gamma * outward, -self.axis),
+            Some(_) => (self.light, gamma.sin() * outward - gamma.cos() * self.axis),
+        }
+    }
+
+    /// The range of S, on the scale of the nodes, of all light rays between two gammas that end `ends[0]` to `ends[1]`
+    /// [m] from their points (infinite: never): a point of view ray b is lit iff b < S.
+    pub(crate) fn shadow_range(&self, gammas: [f64; 2], ends: [f64; 2]) -> [f64; 2] {
+        let least = |end| {
+            gammas
+                .map(|g| self.shadow(g, end))
+                .into_iter()
+                .fold(f64::INFINITY, f64::min)
+        };
+        let greatest = match self.local {
+            // Extremes of an angle over a box of (gamma, -end), or of a linear function, are at its corners.
+            None => gammas
+                .map(|g| self.shadow(g, ends[1]))
+                .into_iter()
+                .fold(f64::NEG_INFINITY, f64::max),
+            // S grows with the end. Along gamma it has one hump, where the light ray's end is seen farthest from the axis.
+            Some(distance) => {
+                let hump = if self.orthographic {
+                    FRAC_PI_2
+                } else {
+                    (ends[1] / distance).min(1.0).acos()
+                };
+                self.shadow(hump.clamp(gammas[0], gammas[1]), ends[1])
+            }
+        };
+        [least(ends[0]), greatest].map(|s| (s - self.b_start) * self.b_scale)
+    }
+
+    /// S of the light ray `gamma` that ends `end` [m] from its point.
+    fn shadow(&self, gamma: f64, end: f64) -> f64 {
+        // Of an infinite end as of a far one, so that nothing is infinite times nothing.
+        let end = end.min(FAR);
+        let (sine, cosine) = gamma.sin_cos();
+        match (self.orthographic, self.local) {
+            (true, None) => gamma * self.cotangent + end,
+            (true, Some(_)) => end * sine,
+            (false, None) => angle_scale(gamma, -end),
+            (false, Some(distance)) => angle_scale(end * sine, distance - end * cosine),
+        }
     }
 
     /// The range of gamma that the picture's rays and the light's map may have in common. What a ray meets beyond it
@@ -434,3 +516,6 @@ fn distance_to_quad(corners: [[f64; 2]; 4]) -> f64 {
     };
     edges().map(to_edge).fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests;

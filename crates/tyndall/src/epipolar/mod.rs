@@ -5,6 +5,7 @@
 //! `gamma` the light ray: its distance from the axis [m] (sun), or its angle at the light from the axis [rad].
 //! With half-planes neither beta nor gamma changes sign.
 
+pub(crate) mod cells;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 pub(crate) mod grid;
@@ -23,9 +24,9 @@ use crate::cpu::LightSource;
 /// How finely slices are taken; zeros choose by the picture and the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Slices (0 to 16384); 0: every view ray within half a pixel of one, and no fewer than the map's texels a side.
+    /// Slices (0 to 16384); 0: every view ray within half a pixel of one, within the technique's own limits.
     pub slices: u32,
-    /// Light rays a slice (0 to 16384); 0: the map's texels a side.
+    /// Light rays or cells of them a slice (0 to 16384); 0: as the technique suits the map's texels a side.
     pub samples: u32,
     /// Radius about the axis within which rays are walked through the shadow map itself [pixels] (0 to 100).
     pub epipole_radius: f64,

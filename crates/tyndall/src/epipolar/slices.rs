@@ -90,6 +90,12 @@ impl Slices {
         self.turns && (self.step * self.count as f64 - TAU).abs() < 1e-9
     }
 
+    /// True where alpha is an angle about an axis.
+    #[cfg(test)]
+    pub(crate) fn turns(&self) -> bool {
+        self.turns
+    }
+
     /// alpha of a slice.
     pub(crate) fn alpha(&self, slice: usize) -> f64 {
         self.first + slice as f64 * self.step

@@ -151,6 +151,16 @@ impl<'a> LightModel<'a> {
         }
     }
 
+    /// The way a spot shines and the angle of its cone [rad]; `None` for other lights.
+    pub(crate) fn cone(&self) -> Option<(DVec3, f64)> {
+        match self.shape {
+            Shape::Spot {
+                axis, cos_outer, ..
+            } => Some((axis, cos_outer.acos())),
+            _ => None,
+        }
+    }
+
     /// True where the light is the same along a view ray but for distance and angle:
     /// section 1's closed forms hold for it.
     pub fn is_plain(&self) -> bool {

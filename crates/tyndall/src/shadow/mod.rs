@@ -4,6 +4,7 @@
 //! light than the texel's depth. The medium needs no bias: a texel's error is as often too near as too far, and the
 //! surface itself has no volume. Outside the map, and where nothing was drawn, everything is lit.
 
+pub(crate) mod depths;
 #[cfg(feature = "gpu")]
 pub(crate) mod pyramid;
 pub mod walk;
@@ -204,17 +205,27 @@ impl<'a> Shadows<'a> {
     /// Distance [m] from a point of a light ray, along its unit direction, at which the map ends the ray; infinite
     /// where it does not. A local light's ray starts at the light; the sun's may end before the point.
     pub(crate) fn light_end(&self, origin: DVec3, direction: DVec3) -> f64 {
+        let Some(line) = self.line(origin, direction) else {
+            return f64::INFINITY;
+        };
+        let stored = texel_index(line.uv, self.map.size)
+            .map_or(0.0, |texel| self.stored_depth(line.face, texel));
+        if stored <= 0.0 {
+            f64::INFINITY
+        } else {
+            line.end(stored)
+        }
+    }
+
+    /// A light ray on the map: from a local light's position, or from any point of the sun's ray. `None` where it
+    /// travels behind the map's light.
+    pub(crate) fn line(&self, origin: DVec3, direction: DVec3) -> Option<ShadowLine> {
         let face = self.face_of(origin + direction);
         let matrix = &self.faces[face].clip_from_world;
         let c0 = *matrix * origin.extend(1.0);
         let c1 = *matrix * direction.extend(0.0);
-        let texel = picture_point(c0 + c1).and_then(|uv| texel_index(uv, self.map.size));
-        let stored = texel.map_or(0.0, |texel| self.stored_depth(face, texel));
-        if stored <= 0.0 {
-            return f64::INFINITY;
-        }
-        // z(t) = stored w(t)
-        (stored * c0.w - c0.z) / (c1.z - stored * c1.w)
+        let uv = picture_point(c0 + c1)?;
+        Some(ShadowLine { uv, face, c0, c1 })
     }
 
     /// The part of the ray's stretch `[a, b]` [m] that a single map covers; beyond it everything is lit.
@@ -247,6 +258,16 @@ impl<'a> Shadows<'a> {
     /// Side of a face [texels], the longer one.
     pub(crate) fn side(&self) -> u32 {
         self.map.size[0].max(self.map.size[1])
+    }
+
+    /// Width and height of a face [texels].
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.map.size
+    }
+
+    /// The faces' projections.
+    pub(crate) fn faces(&self) -> &[Face] {
+        &self.faces
     }
 
     /// The face whose axis is nearest to the direction from the centre.
@@ -282,6 +303,23 @@ impl<'a> Shadows<'a> {
     fn near_is_one(&self, depth: f32) -> f64 {
         let depth = f64::from(depth);
         if self.reversed { depth } else { 1.0 - depth }
+    }
+}
+
+/// A light ray on a shadow map: `c0 + t c1` in a face's clip space, at one place of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShadowLine {
+    /// (0, 0) top left, (1, 1) bottom right.
+    pub(crate) uv: DVec2,
+    pub(crate) face: usize,
+    c0: DVec4,
+    c1: DVec4,
+}
+
+impl ShadowLine {
+    /// Distance [m] from the ray's point to the plane of this depth: `z(t) = depth w(t)`.
+    pub(crate) fn end(&self, depth: f64) -> f64 {
+        (depth * self.c0.w - self.c0.z) / (self.c1.z - depth * self.c1.w)
     }
 }
 

@@ -21,6 +21,46 @@ impl ClipRay {
     }
 }
 
+/// A ray over a shadow map, taken apart where it goes over from one face to another.
+pub(crate) struct RayOnMap<'a> {
+    shadows: &'a Shadows<'a>,
+    pieces: Vec<Piece>,
+}
+
+/// The stretch of a ray that lies over one face, in front of the light.
+struct Piece {
+    face: usize,
+    ray: ClipRay,
+    span: [f64; 2],
+}
+
+impl RayOnMap<'_> {
+    /// Appends what the map blocks of the ray's points within a part of its span [m], in order; stretches that touch are one.
+    pub(crate) fn walk_depth(&self, part: [f64; 2], shades: &mut Vec<Shade>) {
+        for (piece, part) in self.pieces_of(part) {
+            self.shadows
+                .walk_depth(piece.face, &piece.ray, part, shades);
+        }
+    }
+
+    /// Appends what the glass tints of a part of its span.
+    pub(crate) fn walk_tints(&self, part: [f64; 2], shades: &mut Vec<Shade>) {
+        if self.shadows.glass.is_some() {
+            for (piece, part) in self.pieces_of(part) {
+                self.shadows
+                    .walk_glass(piece.face, &piece.ray, part, shades);
+            }
+        }
+    }
+
+    fn pieces_of(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = (&Piece, [f64; 2])> {
+        self.pieces.iter().filter_map(move |piece| {
+            let part = [from.max(piece.span[0]), to.min(piece.span[1])];
+            (part[0] < part[1]).then_some((piece, part))
+        })
+    }
+}
+
 impl Shadows<'_> {
     /// Appends what the map blocks and the glass tints of the ray's points between `a` and `b` [m], in order of
     /// distance for each texel; blocked stretches that touch are one.
@@ -31,38 +71,22 @@ impl Shadows<'_> {
         span: [f64; 2],
         shades: &mut Vec<Shade>,
     ) {
-        self.for_each_face(origin, direction, span, |face, ray, span| {
-            self.walk_depth(face, ray, span, shades);
-        });
-        self.walk_tints(origin, direction, span, shades);
+        let ray = self.on_map(origin, direction, span);
+        ray.walk_depth(span, shades);
+        ray.walk_tints(span, shades);
     }
 
-    /// Appends what the glass tints, without what the map blocks.
-    pub(crate) fn walk_tints(
-        &self,
-        origin: glam::DVec3,
-        direction: glam::DVec3,
-        span: [f64; 2],
-        shades: &mut Vec<Shade>,
-    ) {
-        if self.glass.is_some() {
-            self.for_each_face(origin, direction, span, |face, ray, span| {
-                self.walk_glass(face, ray, span, shades);
-            });
-        }
-    }
-
-    /// Calls `visit` with each face that the ray passes over, the ray in its clip space, and the stretch of it.
-    fn for_each_face(
+    /// The ray's points between `a` and `b` [m], ready to be walked in parts.
+    pub(crate) fn on_map(
         &self,
         origin: glam::DVec3,
         direction: glam::DVec3,
         [a, b]: [f64; 2],
-        mut visit: impl FnMut(usize, &ClipRay, [f64; 2]),
-    ) {
+    ) -> RayOnMap<'_> {
         let mut borders = self.face_borders(origin, direction, [a, b]);
         borders.push(b);
         let mut from = a;
+        let mut pieces = Vec::with_capacity(borders.len());
         for to in borders {
             let face = self.face_of(origin + 0.5 * (from + to) * direction);
             let matrix = &self.faces[face].clip_from_world;
@@ -70,10 +94,14 @@ impl Shadows<'_> {
                 c0: *matrix * origin.extend(1.0),
                 c1: *matrix * direction.extend(0.0),
             };
-            if let Some(stretch) = in_front(&ray, [from, to]) {
-                visit(face, &ray, stretch);
+            if let Some(span) = in_front(&ray, [from, to]) {
+                pieces.push(Piece { face, ray, span });
             }
             from = to;
+        }
+        RayOnMap {
+            shadows: self,
+            pieces,
         }
     }
 

@@ -160,6 +160,10 @@ pub(crate) struct Slicing<P>(PhantomData<P>);
 
 /// Parameters that hold a [`Resolution`].
 pub(crate) trait Sliced {
+    /// What `slices` and `samples` mean.
+    const SLICES: &'static str;
+    const SAMPLES: &'static str;
+
     fn resolution(&self) -> &Resolution;
     fn resolution_mut(&mut self) -> &mut Resolution;
 }
@@ -168,7 +172,7 @@ impl<P: Sliced + 'static> Slicing<P> {
     pub(crate) const PARAMS: &'static [Param<P>] = &[
         Param {
             key: "slices",
-            about: "epipolar slices; 0: every ray within half a pixel of one, and no fewer than the map's texels a side",
+            about: P::SLICES,
             range: "a whole number from 0 to 16384",
             get: |p| Value::Integer(p.resolution().slices.into()),
             set: |p, v| {
@@ -178,7 +182,7 @@ impl<P: Sliced + 'static> Slicing<P> {
         },
         Param {
             key: "samples",
-            about: "light rays a slice; 0: the shadow map's texels a side",
+            about: P::SAMPLES,
             range: "a whole number from 0 to 16384",
             get: |p| Value::Integer(p.resolution().samples.into()),
             set: |p, v| {

@@ -87,7 +87,8 @@ fn walked(
 fn is_tinted(ray: &Ray, light: &CpuLight<'_>, place: &InSlice) -> bool {
     let mut shades = Vec::new();
     if let Some(shadows) = &light.shadows {
-        shadows.walk_tints(ray.origin, ray.direction, place.span, &mut shades);
+        let on_map = shadows.on_map(ray.origin, ray.direction, place.span);
+        on_map.walk_tints(place.span, &mut shades);
     }
     shades.iter().any(|s| s.tint != [1.0; 3])
 }

@@ -1,17 +1,17 @@
 //! The CPU side: rectify and build trees once a light, then traverse ray by ray.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::Params;
 use crate::{
     camera::Ray,
     cpu::{CpuLight, CpuScene, RayIntegrator, Shade, stretches::integrate_lit},
     epipolar::{
-        tree::MinMaxTree,
-        view::{EpipolarView, InSlice},
+        cells,
+        grid::{EpipolarGrid, GridRay, GridScene},
+        tree::{MinMaxTree, Run},
     },
-    light::LightModel,
+    shadow::walk::RayOnMap,
 };
 
 /// Relative error of the quadrature of a lit stretch, where it has no closed form.
@@ -21,7 +21,7 @@ pub(crate) fn integrator<'a>(
     params: &'a Params,
     scene: &'a CpuScene<'a>,
 ) -> Box<dyn RayIntegrator + 'a> {
-    let of_light = |light| EpipolarView::new(scene, light, &params.resolution).map(Forest::new);
+    let of_light = |light| Forest::new(params, scene, light);
     Box::new(MinMax {
         scene,
         forests: scene.lights.iter().map(of_light).collect(),
@@ -36,7 +36,7 @@ struct MinMax<'a> {
 
 /// A light's slices, and a tree over each.
 struct Forest {
-    view: EpipolarView,
+    grid: EpipolarGrid,
     trees: Vec<MinMaxTree>,
 }
 
@@ -49,7 +49,7 @@ impl RayIntegrator for MinMax<'_> {
                 let span = model.reach(ray.origin, ray.direction, [0.0, ray.length]);
                 if span[0] < span[1] {
                     shades.clear();
-                    find_shades(ray, light, model, forest.as_ref(), span, &mut shades);
+                    find_shades(ray, light, forest.as_ref(), span, &mut shades);
                     sum += integrate_lit(ray, model, self.scene, TOLERANCE, span, &mut shades);
                 }
             }
@@ -61,7 +61,6 @@ impl RayIntegrator for MinMax<'_> {
 fn find_shades(
     ray: &Ray,
     light: &CpuLight<'_>,
-    model: &LightModel<'_>,
     forest: Option<&Forest>,
     span: [f64; 2],
     shades: &mut Vec<Shade>,
@@ -69,39 +68,57 @@ fn find_shades(
     let Some(shadows) = &light.shadows else {
         return;
     };
-    let place = forest.and_then(|f| Some((f, f.view.place(ray, light, model)?)));
-    match place {
-        Some((forest, place)) => {
-            forest.shades(&place, shades);
-            shadows.walk_tints(ray.origin, ray.direction, place.span, shades);
-        }
-        None => shadows.walk(ray.origin, ray.direction, span, shades),
+    let on_map = shadows.on_map(ray.origin, ray.direction, span);
+    match forest.and_then(|f| Some((f, f.grid.ray(ray)?))) {
+        Some((forest, place)) => forest.traverse(&place, span, &on_map, shades),
+        None => on_map.walk_depth(span, shades),
     }
+    on_map.walk_tints(span, shades);
 }
 
 impl Forest {
-    fn new(view: EpipolarView) -> Self {
-        let rows = view.map.rows.par_iter();
-        let trees = rows.map(|row| MinMaxTree::new(&row.angles)).collect();
-        Self { view, trees }
+    /// `None` where there are no slices.
+    fn new(params: &Params, scene: &CpuScene<'_>, light: &CpuLight<'_>) -> Option<Self> {
+        let (model, shadows) = (light.models.first()?, light.shadows.as_ref()?);
+        let grid = GridScene {
+            camera: &scene.camera,
+            size: scene.size,
+            light: model.source(),
+            cone: model.cone(),
+            faces: shadows.faces(),
+            side: shadows.side() as usize,
+        };
+        let grid = EpipolarGrid::new(&grid, &params.resolution)?;
+        let trees = cells::trees(&grid, shadows);
+        Some(Self { grid, trees })
     }
 
-    /// Appends the stretches of a view ray that are in shadow.
-    fn shades(&self, place: &InSlice, shades: &mut Vec<Shade>) {
-        let row = &self.view.map.rows[place.slice];
-        let frame = &self.view.frame;
-        let [from, to] = place.span.map(|s| row.place(frame.gamma(place.beta, s)));
-        let distance = |leaf: usize| {
-            let s = frame.crossing(place.beta, row.gamma(leaf as f64));
-            s.clamp(place.span[0], place.span[1])
-        };
-        let leaves = [from.floor() as usize, to.ceil() as usize];
-        self.trees[place.slice].dark_runs(place.beta as f32, leaves, |[a, b]| {
-            shades.push(Shade {
-                start: distance(a),
-                end: distance(b),
-                tint: [0.0; 3],
-            });
+    /// Appends the stretches of a view ray that are in shadow. What leaves cannot tell is walked, and so is what comes
+    /// before the first leaf that lies wholly within the span, and after the last.
+    fn traverse(
+        &self,
+        ray: &GridRay,
+        span: [f64; 2],
+        on_map: &RayOnMap<'_>,
+        shades: &mut Vec<Shade>,
+    ) {
+        let [from, to] = span.map(|s| self.grid.sample_at(ray, s));
+        let last = self.grid.samples as f64;
+        let first = from.ceil().clamp(0.0, last) as usize;
+        let end = (to.floor().clamp(0.0, last) as usize).max(first);
+        let border = |leaf| self.grid.crossing(ray, leaf).clamp(span[0], span[1]);
+        on_map.walk_depth([span[0], border(first)], shades);
+        self.trees[ray.slice].unlit_runs(ray.b, [first, end], |run, leaves| {
+            let part = leaves.map(border);
+            match run {
+                Run::Dark => shades.push(Shade {
+                    start: part[0],
+                    end: part[1],
+                    tint: [0.0; 3],
+                }),
+                Run::Mixed => on_map.walk_depth(part, shades),
+            }
         });
+        on_map.walk_depth([border(end), span[1]], shades);
     }
 }

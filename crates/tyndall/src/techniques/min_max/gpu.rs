@@ -1,7 +1,6 @@
 //! The GPU side: the shadow map's pyramid, the rectified trees, and the pass that traverses them.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
 
 use super::{Integrator, Params, svd};
 use crate::{
@@ -19,7 +18,7 @@ use crate::{
         shader::{AIRLIGHT, STRETCH},
     },
     light::LightModel,
-    physics::medium::{Optics, reals},
+    physics::medium::Optics,
     shadow::{
         self,
         pyramid::{self, PYRAMID, Source},
@@ -27,8 +26,8 @@ use crate::{
     validate,
 };
 
-const TREE: &str = include_str!("tree.wgsl");
-const RECTIFY: &str = include_str!("rectify.wgsl");
+pub(crate) const TREE: &str = include_str!("tree.wgsl");
+pub(crate) const RECTIFY: &str = include_str!("rectify.wgsl");
 const TRAVERSE: &str = include_str!("traverse.wgsl");
 const WALK: &str = include_str!("../../shadow/walk.wgsl");
 
@@ -261,20 +260,13 @@ fn grid(params: &Params, scope: &LightScope<'_>) -> Option<EpipolarGrid> {
         .shadow
         .and_then(|projection| shadow::faces(&light.emitter, &projection))
         .unwrap_or_default();
-    let cone = match light.emitter {
-        Emitter::Spot {
-            direction, outer, ..
-        } => Some((
-            reals(direction).normalize_or(DVec3::NEG_Y),
-            f64::from(outer),
-        )),
-        _ => None,
-    };
+    let models = LightModel::samples(light, None);
+    let model = models.first()?;
     let grid = GridScene {
         camera: scope.rays,
         size: scope.size,
-        light: LightModel::samples(light, None).first()?.source(),
-        cone,
+        light: model.source(),
+        cone: model.cone(),
         faces: &faces,
         side: map.map_or(1, |map| map.width().max(map.height())) as usize,
     };

@@ -1,25 +1,32 @@
 //! `min-max`: 1-D min-max mipmaps (Chen, Baran, Durand, Jarosz 2011).
 //!
 //! Light and view rays of one slice through the eye and the light meet in one plane. The shadow map, resampled to
-//! slices, becomes one row S[gamma] a slice, and a point of the view ray beta at the light ray gamma is lit iff
-//! beta < S[gamma]: a search in one dimension, sped up by a complete binary tree of (min, max) over the row. The tree is
-//! traversed without recursion, up at most one level a step, and adjoining shadowed nodes make one stretch (the paper's
-//! section 3.3). Each lit stretch is integrated in closed form (its section 4.3), or by quadrature where the light has a
-//! cone or a picture.
+//! slices, becomes one row S[gamma] a slice, and a point of the view ray b at the light ray gamma is lit iff
+//! b < S[gamma]: a search in one dimension, sped up by a complete binary tree of (min, max) over the row. The tree is
+//! traversed without recursion, up at most one level a step, and adjoining nodes in the same state make one stretch (the
+//! paper's section 3.3). Each lit stretch is integrated in closed form (its section 4.3), or by quadrature where the
+//! light has a cone or a picture.
 //!
-//! - `slices`: how many; 0 takes as many as put every view ray within half a pixel of one (the paper's rule), and at
-//!   least as many as the shadow map has texels a side: small pictures of fine shadows show the half pixel. Relative
-//!   error of a 160 x 120 picture of a hall behind a window grid, 2048^2 map: 0.053 by the half-pixel rule alone,
-//!   0.012 with 1500 slices, 0.0083 with 3000; of the map itself 0.0065.
-//! - `samples`: of gamma, a slice; 0 takes as many as the shadow map has texels a side. They are spread over what the
-//!   slice's view rays see of the map, slice by slice.
-//! - `epipole_radius`: view rays within so many pixels of the axis cross few samples; they are walked through the shadow
-//!   map itself. So is every ray where the eye is at the light.
+//! Where the paper samples S, a leaf here is a cell of light rays, as wide as its slice, and holds the least and the
+//! greatest S of all of them: from the nearest and farthest depth of the shadow map's texels beneath it, read from a
+//! pyramid of the map, and rounded outwards to 16 bits. So what the tree calls lit or dark is so for every view ray of the
+//! slice, and where it can tell neither, the ray is walked through the map's texels. Shadows are those of the map,
+//! exactly, whatever the resolution; it only shares the work out between trees and walks. Cameras may be perspective
+//! or orthographic, maps single or cubes.
 //!
-//! Cost: slices x samples texels to rectify, twice as many nodes; then some nodes a border between light and shadow.
+//! - `slices`: how many; 0 takes as many as put every view ray within half a pixel of one (the paper's rule), but at most
+//!   1024: more only cost time. At least so many are taken that none is wider than a quarter of a radian.
+//! - `samples`: leaves a slice, over what the picture's rays and the light's map have in common; 0 takes half as many as
+//!   the shadow map has texels a side. A power of two: other numbers are rounded up.
+//! - `epipole_radius`: view rays within so many pixels of the axis cross few leaves and are walked. So is every ray
+//!   where the eye is at the light, or an orthographic view runs along the sun.
 //!
-//! Where it fails: a ray takes its slice's shadow, up to half a pixel beside it, and shadow borders fall on samples of
-//! gamma. Orthographic cameras have no such slices and are walked.
+//! Cost: slices x samples cells, some texels of the pyramid each; then some nodes a border between light and shadow, and
+//! some texels an undecided leaf. On the CPU, of a church through whose windows the sun shines, 640 x 480 pixels and a
+//! 4096^2 map: 256 slices take three times as long as 1024, and 4096 take 1.7 times as long.
+//!
+//! Where it fails: cells that span two faces of a cube are not decided; shadows as fine as the map's texels leave few
+//! leaves decided, and the technique is then a walk with a detour.
 
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
@@ -77,6 +84,11 @@ impl Default for Params {
 }
 
 impl Sliced for Params {
+    const SLICES: &'static str =
+        "epipolar slices; 0: every ray within half a pixel of one, but at most 1024";
+    const SAMPLES: &'static str =
+        "cells a slice, rounded up to a power of two; 0: half the shadow map's texels a side";
+
     fn resolution(&self) -> &Resolution {
         &self.resolution
     }

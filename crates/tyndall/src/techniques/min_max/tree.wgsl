@@ -11,8 +11,8 @@ fn tree_node(leaves: u32, slice: u32, level: u32, index: u32) -> u32 {
 }
 
 fn tree_pack(range: vec2f) -> u32 {
-    // f32 errs by less than a twentieth of a step.
-    let q = clamp(vec2f(floor(range.x - 0.05), ceil(range.y + 0.05)), vec2f(0.0), vec2f(65535.0));
+    // In f32 a view ray's b and S err by less than an eighth of a step together.
+    let q = clamp(vec2f(floor(range.x - 0.125), ceil(range.y + 0.125)), vec2f(0.0), vec2f(65535.0));
     return u32(q.x) | (u32(q.y) << 16u);
 }
 
