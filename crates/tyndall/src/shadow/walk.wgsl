@@ -51,8 +51,11 @@ fn shadow_walk_way(walk: ShadowWalk) -> vec2i {
 fn shadow_walk_next(walk: ShadowWalk) -> ShadowWalk {
     let way = shadow_walk_way(walk);
     let border = vec2f(walk.texel + max(way, vec2i(0)));
-    let crossing = (border * walk.c0.w - walk.c0.xy) / (walk.c1.xy - border * walk.c1.w);
-    let is_border = (way != vec2i(0)) & (border >= vec2f(0.0)) & (border <= walk.size);
+    let slope = walk.c1.xy - border * walk.c1.w;
+    let crossing = (border * walk.c0.w - walk.c0.xy) / slope;
+    // In perspective a ray may end at its vanishing point before it comes to the border.
+    let is_ahead = slope * vec2f(way) > vec2f(0.0);
+    let is_border = is_ahead & (border >= vec2f(0.0)) & (border <= walk.size);
     var next = walk;
     next.next = select(vec2f(1e30), crossing, is_border);
     return next;
