@@ -100,6 +100,7 @@ mod validate;
 
 #[cfg(feature = "gpu")]
 pub use effect::{
-    CreateError, Effect, EffectOptions, EffectView, FrameInputs, LightInputs, OutputPrecision,
+    Count, CountValue, CreateError, Effect, EffectOptions, EffectView, FrameInputs, LightInputs,
+    OutputPrecision,
 };
 pub use error::PrepareError;

@@ -22,6 +22,7 @@ const MAP: u32 = 64;
 const GLASS_LAYERS: u32 = 2;
 
 /// A frame and its pictures.
+#[derive(Clone)]
 pub(crate) struct Stage {
     pub(crate) name: String,
     pub(crate) frame: Frame,
