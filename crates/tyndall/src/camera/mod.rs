@@ -190,6 +190,7 @@ impl CameraRays {
     }
 
     /// A distance from the eye that no point of any view ray exceeds [m].
+    #[cfg(feature = "gpu")]
     pub(crate) fn reach(&self) -> f64 {
         let [near, far] = self.planes();
         let (half_extent, center) = self.plane();

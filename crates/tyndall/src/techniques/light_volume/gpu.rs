@@ -24,12 +24,12 @@ use crate::{
     validate::faces,
 };
 
-const CUBE: &str = include_str!("cube.wgsl");
-const MESH: &str = include_str!("mesh.wgsl");
+pub(crate) const CUBE: &str = include_str!("cube.wgsl");
+pub(crate) const MESH: &str = include_str!("mesh.wgsl");
 const SURFACE: &str = include_str!("surface.wgsl");
-const SPLITS: &str = include_str!("splits.wgsl");
+pub(crate) const SPLITS: &str = include_str!("splits.wgsl");
 const SPLIT: &str = include_str!("split.wgsl");
-const GROW: &str = include_str!("grow.wgsl");
+pub(crate) const GROW: &str = include_str!("grow.wgsl");
 const LIST: &str = include_str!("list.wgsl");
 const PANES: &str = include_str!("panes.wgsl");
 const GLASS: &str = include_str!("glass.wgsl");

@@ -57,7 +57,7 @@ mod extent;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 #[cfg(feature = "gpu")]
-mod tessellation;
+pub(crate) mod tessellation;
 #[cfg(all(test, feature = "gpu"))]
 mod twin;
 
