@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{SIZE, Stage, crowd, gpu as on, stages, steps, technique};
+use common::{SIZE, Stage, crowd, gpu as on, noise, stages, steps, technique};
 use tyndall::{
     CreateError, FrameInputs, camera::CameraRays, frame::ShadowProjection, techniques::Value,
 };
@@ -114,6 +114,31 @@ fn light_volumes_of_flat_maps_are_exact() {
         let error = compare(&ours, &exact).expect("same size").rel_mae;
         // Largest measured on lavapipe: 4.2e-4.
         assert!(error < 6e-4, "{}: {error}", stage.name);
+    }
+}
+
+/// Where every texel stands out, the full mesh is drawn: its list would be too long.
+#[test]
+fn light_volumes_of_noise_are_drawn_in_full() {
+    let Some(gpu) = device_or_skip("light volumes of noise") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for mut stage in plain_stages().into_iter().step_by(6) {
+        for pictures in &mut stage.lights {
+            pictures.glass = None;
+            for (i, depth) in pictures
+                .shadow_map
+                .iter_mut()
+                .flat_map(|m| m.depth.iter_mut().enumerate())
+            {
+                *depth *= 0.5 + 0.5 * noise(i as u32);
+            }
+        }
+        let [full, merged] = [0.0, 0.5].map(|t| on::on_gpu(gpu, &effect, &stage, light_volume(t)));
+        let error = compare(&merged, &full).expect("same size").rel_mae;
+        // Measured on lavapipe: none.
+        assert!(error < 1e-6, "{}: {error}", stage.name);
     }
 }
 

@@ -167,8 +167,7 @@ fn light_volume_texel_glass(ray: Ray, walk: LightVolumeWalk, texel: vec2u, span:
         let p = walk.c0 + 0.5 * (s + end) * walk.c1;
         let depth = p.z / max(p.w, 1e-30);
         if shadow_reaches(depth, held) {
-            let uv = (vec2f(texel) + 0.5) / vec2f(textureDimensions(shadow_glass));
-            let tint = shadow_glass_tint(ShadowPoint(uv, walk.face, depth));
+            let tint = shadow_glass_texel_tint(texel, walk.face, depth);
             if any(tint != vec3f(1.0)) {
                 sum += (tint - 1.0) * stretch_short(ray, s, end);
             }

@@ -85,7 +85,8 @@ fn light_volume_side(@builtin(vertex_index) i: u32) -> LightVolumeVertex {
 fn light_volume_surface(in: LightVolumeVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let ray = frame_ray(in.position);
     let s = in.view_depth / dot(frame.camera.forward, ray.direction);
-    if s < 0.0 {
+    // Behind the ray's start, or of a projection beyond f32.
+    if !(s >= 0.0) {
         discard;
     }
     let jump = select(1.0, -1.0, front != (light_volume.mirrored == 1u));
