@@ -48,6 +48,7 @@ impl Stats<'_> {
             "stages": times(self.stages),
             "total_ms": self.total,
             "bytes": bytes(&self.rendered.bytes),
+            "counts": counts(&self.rendered.counts),
         })
     }
 }
@@ -73,6 +74,11 @@ fn times(times: &[(String, f64)]) -> Vec<Value> {
         .iter()
         .map(|(name, milliseconds)| json!({ "name": name, "ms": milliseconds }))
         .collect()
+}
+
+fn counts(counts: &[(String, u64)]) -> Map<String, Value> {
+    let entry = |(name, count): &(String, u64)| (name.clone(), json!(count));
+    counts.iter().map(entry).collect()
 }
 
 fn bytes(parts: &[(&'static str, u64)]) -> Map<String, Value> {

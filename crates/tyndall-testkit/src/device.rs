@@ -163,18 +163,35 @@ impl TestDevice {
 pub fn device() -> Result<&'static TestDevice, Missing> {
     static DEVICE: OnceLock<Result<TestDevice, Missing>> = OnceLock::new();
     DEVICE
-        .get_or_init(|| pollster::block_on(open(std::env::var(DRIVER_VARIABLE).ok().as_deref())))
+        .get_or_init(|| open_blocking(OPTIONAL_FEATURES))
         .as_ref()
         .map_err(Missing::clone)
+}
+
+fn open_blocking(optional: wgpu::Features) -> Result<TestDevice, Missing> {
+    let wanted = std::env::var(DRIVER_VARIABLE).ok();
+    pollster::block_on(open(wanted.as_deref(), optional))
 }
 
 /// The device, or `None` after saying aloud that `test` is skipped.
 ///
 /// # Panics
 /// Where the device is missing without [excuse](Missing::is_excused).
-#[allow(clippy::panic, reason = "a test fails by panicking")]
 pub fn device_or_skip(test: &str) -> Option<&'static TestDevice> {
-    match device() {
+    or_skip(test, device())
+}
+
+/// A device of its own with none of the optional features, or `None` as [`device_or_skip`].
+///
+/// # Panics
+/// As [`device_or_skip`].
+pub fn plain_device_or_skip(test: &str) -> Option<TestDevice> {
+    or_skip(test, open_blocking(wgpu::Features::empty()))
+}
+
+#[allow(clippy::panic, reason = "a test fails by panicking")]
+fn or_skip<D>(test: &str, device: Result<D, Missing>) -> Option<D> {
+    match device {
         Ok(device) => Some(device),
         Err(missing) if missing.is_excused() => {
             skip(test, &missing.to_string());
@@ -184,7 +201,7 @@ pub fn device_or_skip(test: &str) -> Option<&'static TestDevice> {
     }
 }
 
-async fn open(wanted: Option<&str>) -> Result<TestDevice, Missing> {
+async fn open(wanted: Option<&str>, optional: wgpu::Features) -> Result<TestDevice, Missing> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -196,7 +213,7 @@ async fn open(wanted: Option<&str>) -> Result<TestDevice, Missing> {
     let (device, queue) = adapter
         .request_device(&wgpu::DeviceDescriptor {
             label: Some("tyndall tests"),
-            required_features: adapter.features() & OPTIONAL_FEATURES,
+            required_features: adapter.features() & optional,
             ..wgpu::DeviceDescriptor::default()
         })
         .await

@@ -82,6 +82,32 @@ pub struct LightInputs<'a> {
     pub glass: Option<&'a wgpu::TextureView>,
     /// The light's texture: 2-D, filterable, linear when read.
     pub texture: Option<&'a wgpu::TextureView>,
+    /// A number that changes whenever the shadow map's content does: what a technique made of the map alone for the
+    /// frame before, if that was recorded and submitted, is used again. `None`: the map may change from frame to frame.
+    pub shadow_revision: Option<u64>,
+}
+
+/// A number that says what a frame took, beside its time.
+#[derive(Clone, Debug)]
+pub struct Count {
+    /// What it counts, and of which light.
+    pub name: String,
+    /// Where to find it.
+    pub value: CountValue,
+}
+
+/// Where a [`Count`] is found.
+#[derive(Clone, Debug)]
+pub enum CountValue {
+    /// Here.
+    Known(u64),
+    /// On the device, once the frame's passes have run: a u32 in a buffer of usage `COPY_SRC`.
+    Written {
+        /// The buffer.
+        buffer: wgpu::Buffer,
+        /// Where the number stands in it [bytes].
+        offset: u64,
+    },
 }
 
 /// The effect's pipelines. Immutable, one a device.
@@ -96,6 +122,9 @@ pub struct EffectView {
     size: [u32; 2],
     pool: Pool,
     passes: Vec<Pass>,
+    counts: Vec<Count>,
+    /// Whether the frame prepared last was recorded.
+    is_recorded: bool,
     output: wgpu::TextureView,
     composite: Option<wgpu::BindGroup>,
 }
@@ -142,6 +171,8 @@ impl Effect {
             size,
             pool,
             passes: Vec::new(),
+            counts: Vec::new(),
+            is_recorded: false,
             output,
             composite: None,
         })
@@ -179,9 +210,9 @@ impl Effect {
 
         let rays = CameraRays::new(&frame.camera, view.size);
         let uniform = FrameUniform::new(frame, &rays, view.size);
-        view.pool.begin();
+        view.pool.begin(view.is_recorded);
         let frame_uniform = view.pool.uniform(device, queue, (None, "frame"), &uniform);
-        let mut passes = Vec::new();
+        let (mut passes, mut counts) = (Vec::new(), Vec::new());
         let mut before = self.shared.absent.light.clone();
         for (i, (light, light_inputs)) in lights.iter().enumerate() {
             let layers = light_inputs.glass.map(|glass| glass_layers(light, glass));
@@ -206,12 +237,15 @@ impl Effect {
                 frame_group: self.frame_group(device, &frame_uniform, inputs.depth, &before),
                 light_group: self.light_group(device, &uniform, light_inputs),
                 target: target.clone(),
+                counts: &mut counts,
             };
             passes.extend(frame.technique.passes(&self.programs, &mut scope));
             before = target;
         }
         view.pool.end();
         view.passes = passes;
+        view.counts = counts;
+        view.is_recorded = false;
         view.composite = Some(self.frame_group(device, &frame_uniform, inputs.depth, &before));
         view.output = before;
         Ok(())
@@ -224,6 +258,7 @@ impl Effect {
         view: &mut EffectView,
         mut timer: Option<&mut PassTimer>,
     ) {
+        view.is_recorded = true;
         for pass in &view.passes {
             pass.record(encoder, timer.as_deref_mut());
         }
@@ -302,9 +337,20 @@ impl EffectView {
         &self.output
     }
 
+    /// The passes of the frame prepared last.
+    #[cfg(test)]
+    pub(crate) fn passes(&self) -> &[Pass] {
+        &self.passes
+    }
+
     /// Width and height [pixels].
     pub fn size(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// What the frame prepared last counts, light by light.
+    pub fn counts(&self) -> &[Count] {
+        &self.counts
     }
 
     /// Bytes of the textures and buffers this view holds.

@@ -2,9 +2,14 @@
 
 mod common;
 
-use common::{SIZE, crowd, gpu as on, stages, steps, technique};
-use tyndall::{CreateError, FrameInputs, camera::CameraRays, techniques::Value};
-use tyndall_testkit::{device::device_or_skip, metrics::compare};
+use common::{SIZE, Stage, crowd, gpu as on, noise, stages, steps, technique};
+use tyndall::{
+    CreateError, FrameInputs, camera::CameraRays, frame::ShadowProjection, techniques::Value,
+};
+use tyndall_testkit::{
+    device::{device_or_skip, plain_device_or_skip},
+    metrics::compare,
+};
 
 /// Same steps, same map; what differs is f32 against f64: texels and depths at a border that fall to the other side.
 #[test]
@@ -23,6 +28,139 @@ fn marching_agrees_with_the_cpu() {
                 .rel_mae;
             // Largest measured on lavapipe: 8e-4.
             assert!(error < 2e-3, "{}, {spacing:?}: {error}", stage.name);
+        }
+    }
+}
+
+/// The stages of lights without pictures, and one of all of these lights.
+fn plain_stages() -> Vec<Stage> {
+    let mut stages = stages();
+    stages.retain(|stage| stage.frame.lights.iter().all(|l| l.texture.is_none()));
+    let mut all = crowd();
+    let (lights, pictures) = all
+        .frame
+        .lights
+        .iter()
+        .zip(&all.lights)
+        .filter(|(light, _)| light.texture.is_none())
+        .map(|(light, pictures)| (*light, pictures.clone()))
+        .unzip();
+    (all.frame.lights, all.lights) = (lights, pictures);
+    stages.push(all);
+    stages
+}
+
+fn light_volume(tolerance: f64) -> tyndall::techniques::Technique {
+    technique("light-volume", &[("tolerance", Value::Real(tolerance))])
+}
+
+fn of_the_map() -> tyndall::techniques::Technique {
+    let visibility = ("visibility", Value::Word("shadow-map".into()));
+    technique("reference", &[("tolerance", Value::Real(1e-3)), visibility])
+}
+
+/// The same map, with its exact texels on the CPU. What differs: corners where three depths meet, and edges of a cube;
+/// with half floats, where the device blends no others, their rounding.
+#[test]
+fn light_volumes_agree_with_the_map() {
+    let Some(gpu) = device_or_skip("light volumes on the GPU") else {
+        return;
+    };
+    let Some(plain) = plain_device_or_skip("light volumes without FLOAT32_BLENDABLE") else {
+        return;
+    };
+    // Device, tolerance, and the bound of errors. Largest measured on lavapipe: 3.9e-3, 3.8e-3, 5.2e-3.
+    let ways = [(gpu, 0.0, 6e-3), (gpu, 0.5, 6e-3), (&plain, 0.5, 8e-3)];
+    let effects = ways.map(|(device, ..)| on::effect(device));
+    for stage in plain_stages() {
+        let exact = stage.on_cpu(of_the_map());
+        for ((device, tolerance, bound), effect) in ways.iter().zip(&effects) {
+            let ours = on::on_gpu(device, effect, &stage, light_volume(*tolerance));
+            let error = compare(&ours, &exact).expect("same size").rel_mae;
+            assert!(error < *bound, "{}, {tolerance}: {error}", stage.name);
+        }
+    }
+}
+
+/// The same stage with one depth, or nothing, all over its maps, and no glass.
+fn with_flat_maps(mut stage: Stage, is_empty: bool) -> Stage {
+    for (light, pictures) in stage.frame.lights.iter().zip(&mut stage.lights) {
+        pictures.glass = None;
+        let Some(map) = &mut pictures.shadow_map else {
+            continue;
+        };
+        let (ShadowProjection::Single { reversed_depth, .. }
+        | ShadowProjection::Cube { reversed_depth, .. }) =
+            light.shadow.expect("a map has a projection");
+        let nothing = if reversed_depth { 0.0 } else { 1.0 };
+        let surface = map.depth.iter().copied().find(|d| *d != nothing);
+        map.depth
+            .fill(surface.filter(|_| !is_empty).unwrap_or(nothing));
+    }
+    stage
+}
+
+/// A surface that is everywhere equally far has an exact shadow volume; what differs are the airlight tables.
+#[test]
+fn light_volumes_of_flat_maps_are_exact() {
+    let Some(gpu) = device_or_skip("light volumes of flat maps") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for stage in plain_stages().into_iter().step_by(2) {
+        let stage = with_flat_maps(stage, false);
+        let exact = stage.on_cpu(of_the_map());
+        let ours = on::on_gpu(gpu, &effect, &stage, light_volume(0.5));
+        let error = compare(&ours, &exact).expect("same size").rel_mae;
+        // Largest measured on lavapipe: 4.2e-4.
+        assert!(error < 6e-4, "{}: {error}", stage.name);
+    }
+}
+
+/// Where every texel stands out, the full mesh is drawn: its list would be too long.
+#[test]
+fn light_volumes_of_noise_are_drawn_in_full() {
+    let Some(gpu) = device_or_skip("light volumes of noise") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for mut stage in plain_stages().into_iter().step_by(6) {
+        for pictures in &mut stage.lights {
+            pictures.glass = None;
+            for (i, depth) in pictures
+                .shadow_map
+                .iter_mut()
+                .flat_map(|m| m.depth.iter_mut().enumerate())
+            {
+                *depth *= 0.5 + 0.5 * noise(i as u32);
+            }
+        }
+        let [full, merged] = [0.0, 0.5].map(|t| on::on_gpu(gpu, &effect, &stage, light_volume(t)));
+        let error = compare(&merged, &full).expect("same size").rel_mae;
+        // Measured on lavapipe: none.
+        assert!(error < 1e-6, "{}: {error}", stage.name);
+    }
+}
+
+/// Where nothing blocks the light, all jumps of visibility add up to the closed form.
+#[test]
+fn light_volumes_of_empty_maps_are_the_closed_form() {
+    let Some(gpu) = device_or_skip("light volumes of empty maps") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for stage in plain_stages() {
+        let stage = with_flat_maps(stage, true);
+        let mut bare = with_flat_maps(stage.clone(), true);
+        for (light, pictures) in bare.frame.lights.iter_mut().zip(&mut bare.lights) {
+            (light.shadow, pictures.shadow_map) = (None, None);
+        }
+        for tolerance in [0.0, 0.5] {
+            let closed = on::on_gpu(gpu, &effect, &bare, light_volume(tolerance));
+            let ours = on::on_gpu(gpu, &effect, &stage, light_volume(tolerance));
+            let error = compare(&ours, &closed).expect("same size").rel_mae;
+            // Measured on lavapipe: none.
+            assert!(error < 1e-6, "{}, {tolerance}: {error}", stage.name);
         }
     }
 }
@@ -167,5 +305,19 @@ fn what_cannot_be_made_is_refused() {
     assert_eq!(
         refusal(&lights, technique("reference", &[])),
         "technique `reference` cannot do its work on the GPU"
+    );
+    let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
+    let frame = tyndall::frame::Frame {
+        technique: light_volume(0.5),
+        ..stage.frame.clone()
+    };
+    let inputs = FrameInputs {
+        depth: &uploaded.depth,
+        lights: &lights,
+    };
+    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame);
+    assert_eq!(
+        refused.expect_err("a light through a picture").to_string(),
+        "technique `light-volume` cannot do light textures (lights[2])"
     );
 }

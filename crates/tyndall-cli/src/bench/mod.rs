@@ -3,6 +3,7 @@
 //! A suite runs the techniques of its paper that are in the table of techniques, and lists the others as missing.
 //! Every ratio is one of two times of one run, frame by frame in turn.
 
+mod billeter;
 mod fit;
 mod paper;
 mod poses;
@@ -34,6 +35,7 @@ use table::Table;
 /// What a suite measures.
 enum Tables {
     Paper(Paper),
+    LightVolumes(billeter::LightVolumes),
     Scaling,
     Poses,
 }
@@ -88,13 +90,11 @@ const SUITES: [Suite; 7] = [
     },
     Suite {
         name: "billeter",
-        about: "Billeter et al. 2010: polygonal light volumes, by shadow map",
-        tables: Tables::Paper(Paper {
-            techniques: &["light-volume"],
-            scenes: &[subject::DRAGON],
-            size: PICTURE,
-            map: 1024,
-            spot_maps: &[],
+        about: "Billeter et al. 2010: polygonal light volumes, by mesh and shadow map",
+        tables: Tables::LightVolumes(billeter::LightVolumes {
+            scene: subject::SIBENIK,
+            size: [1280, 1024],
+            maps: &[1024, 2048],
         }),
     },
     Suite {
@@ -170,6 +170,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         let (start, mut stages) = (Instant::now(), Stages::default());
         let report = match &suite.tables {
             Tables::Paper(paper) => paper::run(paper, &bench, &mut stages)?,
+            Tables::LightVolumes(suite) => billeter::run(suite, &bench, &mut stages)?,
             Tables::Scaling => scaling::run(&bench, &mut stages)?,
             Tables::Poses => poses::run(poses::POSES, &bench, &mut stages)?,
         };

@@ -34,7 +34,7 @@ pub(super) struct Paper {
 }
 
 /// Errors are measured on pictures this many times smaller on each side: the search for equal quality needs many.
-const REDUCTION: u32 = 4;
+pub(super) const REDUCTION: u32 = 4;
 
 /// Marches of more steps are searched for, but not timed: their frames would take minutes on a software adapter.
 const MOST_TIMED_STEPS: u32 = 512;
@@ -158,7 +158,7 @@ fn measure_scene(
     ])
 }
 
-fn nothing(title: &str) -> Table {
+pub(super) fn nothing(title: &str) -> Table {
     Table {
         title: title.to_owned(),
         notes: vec!["no technique that is there can do its lights".to_owned()],

@@ -112,3 +112,37 @@ fn no_place_makes_min_max_as_wrong_as_brute_force() {
         assert!(row["p99 of brute force"].as_f64().unwrap() > 0.0, "{row:#}");
     }
 }
+
+#[test]
+fn light_volumes_are_measured_by_mesh_and_map() {
+    let Some(gpu) = crate::measure::tests::gpu_or_skip("tyndall bench billeter") else {
+        return;
+    };
+    let suite = billeter::LightVolumes {
+        scene: subject::DRAGON,
+        size: [64, 48],
+        maps: &[64],
+    };
+    let report = billeter::run(&suite, &bench(gpu), &mut Stages::default()).unwrap();
+    let json: Vec<Value> = report.tables.iter().map(Table::to_json).collect();
+    assert_eq!(
+        json[0]["title"],
+        "dragon (builtin:slats in its place), two suns"
+    );
+    let rows = json[0]["rows"].as_array().unwrap();
+    let triangles: Vec<_> = rows
+        .iter()
+        .map(|r| r["triangles"].as_u64().unwrap())
+        .collect();
+    // Two suns, 65 x 65 cells of two triangles.
+    assert_eq!(triangles[0], 2 * 65 * 65 * 2);
+    assert!(triangles.is_sorted_by(|a, b| a > b), "{triangles:?}");
+    for row in rows {
+        assert!(
+            row["ms, mesh stays"]["median"].as_f64().unwrap() > 0.0,
+            "{row:#}"
+        );
+        // Measured: 0.011.
+        assert!(row["relMAE"].as_f64().unwrap() < 0.02, "{row:#}");
+    }
+}

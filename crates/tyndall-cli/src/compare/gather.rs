@@ -14,12 +14,13 @@ use crate::{
 };
 
 impl Comparison {
-    /// Renders the reference and every candidate, and times the candidates in turn.
+    /// Renders the reference and every candidate, and times the candidates in turn. Those that can't do the shot are
+    /// left out, and say why.
     ///
     /// # Errors
-    /// [`Failure::Input`] where a candidate can't do the shot, [`Failure::Device`] where the GPU fails.
+    /// [`Failure::Input`] where no candidate can do the shot, [`Failure::Device`] where the GPU fails.
     pub fn measure(
-        subject: Subject,
+        mut subject: Subject,
         stage: &Stage<'_>,
         candidates: &[Candidate],
         visibility: Visibility,
@@ -30,13 +31,8 @@ impl Comparison {
             Visibility::Traced => floor(stage, &reference, stages)?,
             Visibility::ShadowMap => None,
         };
-        let pictures = candidates
-            .iter()
-            .map(|candidate| {
-                let label = candidate.setting.label();
-                stages.run(&label, |_| stage.in_scatter(&candidate.technique))
-            })
-            .collect::<Result<Vec<Picture>, Failure>>()?;
+        let mut candidates = candidates.to_vec();
+        let pictures = pictures(stage, &mut candidates, &mut subject.left_out, stages)?;
         let techniques: Vec<_> = candidates.iter().map(|c| c.technique.clone()).collect();
         let timings = stages.run("time all, a frame of each in turn", |_| {
             stage.time(&techniques, &Budget::default())
@@ -70,6 +66,37 @@ impl Comparison {
             reference,
             pictures,
         })
+    }
+}
+
+/// In-scatter of each candidate; those that refuse the shot are taken from the candidates and say why.
+fn pictures(
+    stage: &Stage<'_>,
+    candidates: &mut Vec<Candidate>,
+    left_out: &mut Vec<String>,
+    stages: &mut Stages,
+) -> Result<Vec<Picture>, Failure> {
+    let mut pictures = Vec::new();
+    let mut able = Vec::new();
+    let mut refusal = None;
+    for candidate in candidates.drain(..) {
+        let label = candidate.setting.label();
+        match stages.run(&label, |_| stage.in_scatter(&candidate.technique)) {
+            Ok(picture) => {
+                pictures.push(picture);
+                able.push(candidate);
+            }
+            Err(Failure::Input(reason)) => {
+                left_out.push(format!("{label}: {reason:#}"));
+                refusal = Some(Failure::Input(reason));
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    *candidates = able;
+    match refusal {
+        Some(failure) if pictures.is_empty() => Err(failure),
+        _ => Ok(pictures),
     }
 }
 

@@ -16,7 +16,7 @@ use crate::{
     picture::Picture,
     render::{
         Buffers, Gpu, Needs,
-        gpu::{Timestamps, World, new_effect, picture, target_format},
+        gpu::{Timestamps, World, counts, new_effect, picture, target_format},
     },
     setup::Setup,
 };
@@ -36,6 +36,8 @@ pub(super) struct DeviceTechnique<'a> {
     stage: &'a DeviceStage<'a>,
     frame: Frame,
     view: EffectView,
+    /// What the technique is told of the shadow maps, which never change here.
+    shadow_revision: Option<u64>,
     timestamps: Timestamps,
 }
 
@@ -85,6 +87,7 @@ impl<'a> DeviceStage<'a> {
     pub(super) fn technique(
         &'a self,
         technique: &Technique,
+        has_stable_maps: bool,
     ) -> Result<DeviceTechnique<'a>, Failure> {
         let view = self.effect.create_view(&self.gpu.device, self.setup.size);
         Ok(DeviceTechnique {
@@ -94,6 +97,7 @@ impl<'a> DeviceStage<'a> {
                 ..self.setup.frame.clone()
             },
             view: view.map_err(Failure::device)?,
+            shadow_revision: has_stable_maps.then_some(0),
             timestamps: Timestamps::new(&self.gpu.device),
         })
     }
@@ -138,12 +142,17 @@ impl DeviceTechnique<'_> {
             stage,
             frame,
             view,
+            shadow_revision,
             timestamps,
         } = self;
         stage.frame(timestamps, |encoder, timestamps| {
+            let mut lights = stage.world.light_inputs();
+            for light in &mut lights {
+                light.shadow_revision = *shadow_revision;
+            }
             let inputs = FrameInputs {
                 depth: stage.world.g_buffer().depth_view(),
-                lights: &stage.world.light_inputs(),
+                lights: &lights,
             };
             let Gpu { device, queue, .. } = stage.gpu;
             let prepared = stage.effect.prepare(device, queue, view, &inputs, frame);
@@ -159,6 +168,11 @@ impl DeviceTechnique<'_> {
         let channels = readback::texture_f32(device, queue, self.view.output().texture());
         let channels = channels.map_err(Failure::device)?;
         Ok(picture(self.view.size(), &channels))
+    }
+
+    /// What the frame rendered last counts.
+    pub(super) fn counts(&self) -> Result<Vec<(String, u64)>, Failure> {
+        counts(&self.view, &self.stage.gpu.device, &self.stage.gpu.queue)
     }
 
     pub(super) fn bytes(&self) -> u64 {

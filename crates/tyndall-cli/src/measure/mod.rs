@@ -13,7 +13,7 @@ mod stage;
 mod timing;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use equal::{
     EqualQuality, EqualTime, MAX_STEPS, equal_quality, equal_time, error_at, ray_march,

@@ -144,7 +144,7 @@ impl<'a> Stage<'a> {
     pub fn in_scatter(&self, technique: &Technique) -> Result<Picture, Failure> {
         match self.device_for(technique)? {
             Some(device) => {
-                let mut technique = device.technique(technique)?;
+                let mut technique = device.technique(technique, false)?;
                 technique.frame()?;
                 technique.in_scatter()
             }
@@ -166,26 +166,78 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// [`Failure`], as for [`Stage::in_scatter`].
     pub fn time(&self, techniques: &[Technique], budget: &Budget) -> Result<Timings, Failure> {
-        let mut contenders = techniques
+        let contenders = techniques
             .iter()
-            .map(|technique| self.contender(technique))
+            .map(|technique| self.contender(technique, false))
             .collect::<Result<Vec<_>, _>>()?;
+        let (timings, limit) = self.time_contenders(contenders, budget)?;
+        Ok(Timings {
+            techniques: techniques.iter().cloned().zip(timings).collect(),
+            limit,
+        })
+    }
+
+    /// Times techniques in turn, each twice: as if the shadow maps changed every frame, and saying that they don't.
+    /// Also the time of the limit, where there is one.
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`Stage::in_scatter`].
+    pub fn time_with_stable_maps(
+        &self,
+        techniques: &[Technique],
+        budget: &Budget,
+    ) -> Result<(Vec<[Timing; 2]>, Option<Timing>), Failure> {
+        let twice = techniques.iter().flat_map(|t| [(t, false), (t, true)]);
+        let contenders = twice
+            .map(|(technique, is_stable)| self.contender(technique, is_stable))
+            .collect::<Result<Vec<_>, _>>()?;
+        let (timings, limit) = self.time_contenders(contenders, budget)?;
+        let (pairs, _) = timings.as_chunks::<2>();
+        Ok((pairs.to_vec(), limit))
+    }
+
+    /// What a technique counts in a frame; nothing on the CPU.
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`Stage::in_scatter`].
+    pub fn counts(&self, technique: &Technique) -> Result<Vec<(String, u64)>, Failure> {
+        match self.device_for(technique)? {
+            Some(device) => {
+                let mut technique = device.technique(technique, false)?;
+                technique.frame()?;
+                technique.counts()
+            }
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// Times of the contenders, and of the limit.
+    fn time_contenders<'s>(
+        &'s self,
+        mut contenders: Vec<Contender<'s>>,
+        budget: &Budget,
+    ) -> Result<(Vec<Timing>, Option<Timing>), Failure> {
         if let Some(device) = self.device().filter(|device| device.has_limit()) {
             contenders.push(Contender::Limit(device, device.timestamps()));
         }
         let mut runs: Vec<_> = contenders.iter_mut().map(|c| || c.frame()).collect();
         let frames = interleave(&mut runs, budget)?;
         let timings = contenders.iter().zip(&frames);
-        let mut timings = timings.map(|(c, frames)| Timing::new(c.place(), c.bytes(), frames));
-        Ok(Timings {
-            techniques: techniques.iter().cloned().zip(&mut timings).collect(),
-            limit: timings.next(),
-        })
+        let mut timings: Vec<Timing> = timings
+            .map(|(c, frames)| Timing::new(c.place(), c.bytes(), frames))
+            .collect();
+        let has_limit = matches!(contenders.last(), Some(Contender::Limit(..)));
+        let limit = timings.pop_if(|_| has_limit);
+        Ok((timings, limit))
     }
 
-    fn contender<'s>(&'s self, technique: &'s Technique) -> Result<Contender<'s>, Failure> {
+    fn contender<'s>(
+        &'s self,
+        technique: &'s Technique,
+        has_stable_maps: bool,
+    ) -> Result<Contender<'s>, Failure> {
         Ok(match self.device_for(technique)? {
-            Some(device) => Contender::Gpu(Box::new(device.technique(technique)?)),
+            Some(device) => Contender::Gpu(Box::new(device.technique(technique, has_stable_maps)?)),
             None => {
                 // What is read back but once is no part of a frame.
                 self.buffers()?;

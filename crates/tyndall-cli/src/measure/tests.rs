@@ -24,7 +24,7 @@ fn backend(choice: BackendChoice) -> Backend {
     Backend::choose(choice, ray_march(1).info()).unwrap()
 }
 
-pub(super) fn gpu_or_skip(what: &str) -> Option<Backend> {
+pub(crate) fn gpu_or_skip(what: &str) -> Option<Backend> {
     device_or_skip(what).map(|_| backend(BackendChoice::Gpu))
 }
 

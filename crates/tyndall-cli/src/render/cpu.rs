@@ -59,6 +59,7 @@ pub(super) fn render(
             .collect(),
         passes: Vec::new(),
         bytes: vec![("light maps", maps.iter().map(LightMaps::bytes).sum())],
+        counts: Vec::new(),
     })
 }
 

@@ -30,6 +30,8 @@ pub struct Rendered {
     pub passes: Vec<(String, f64)>,
     /// Textures and buffers, by what they are for [bytes].
     pub bytes: Vec<(&'static str, u64)>,
+    /// What the technique counts; empty on the CPU.
+    pub counts: Vec<(String, u64)>,
 }
 
 /// Renders the layers (at least one).

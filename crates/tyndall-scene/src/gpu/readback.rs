@@ -85,6 +85,32 @@ fn words<const N: usize, T>(bytes: &[u8], decode: impl Fn([u8; N]) -> T) -> Vec<
 }
 
 /// The texels of level 0 of all layers, without padding.
+/// The u32 at an offset [bytes, a multiple of 4] of a buffer of usage `COPY_SRC`. Waits for the device.
+///
+/// # Errors
+/// [`ReadbackError::Device`].
+pub fn buffer_u32(
+    device: &Device,
+    queue: &Queue,
+    buffer: &wgpu::Buffer,
+    offset: u64,
+) -> Result<u32, ReadbackError> {
+    let mappable = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read-back"),
+        size: 4,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, offset, &mappable, 0, 4);
+    queue.submit([encoder.finish()]);
+    let numbers = words(&map(device, &mappable)?, u32::from_le_bytes);
+    numbers
+        .first()
+        .copied()
+        .ok_or_else(|| ReadbackError::Device("an empty buffer was mapped".into()))
+}
+
 fn texture_bytes(
     device: &Device,
     queue: &Queue,

@@ -144,6 +144,7 @@ impl LightMaps {
             shadow_map: self.shadow.as_ref().map(|(target, _)| target.view()),
             glass: self.glass.as_ref().map(|(target, _)| target.view()),
             texture: self.texture.as_ref().map(|(view, _)| view),
+            ..LightInputs::default()
         }
     }
 

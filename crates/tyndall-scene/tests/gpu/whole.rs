@@ -67,7 +67,7 @@ fn rasterised(gpu: &TestDevice, renderer: &SceneRenderer, frame: &Frame) -> [Vec
         let inputs = LightInputs {
             shadow_map: shadow.as_ref().map(|(_, shadow)| shadow.view()),
             glass: glass.as_ref().map(GlassMapTarget::view),
-            texture: None,
+            ..LightInputs::default()
         };
         renderer.g_buffer(encoder, &g_buffer, &frame.camera, None);
         renderer.shade(encoder, &view, &g_buffer, frame, &[inputs], None);

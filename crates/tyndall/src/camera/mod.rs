@@ -189,6 +189,19 @@ impl CameraRays {
         }) as f32
     }
 
+    /// A distance from the eye that no point of any view ray exceeds [m].
+    #[cfg(feature = "gpu")]
+    pub(crate) fn reach(&self) -> f64 {
+        let [near, far] = self.planes();
+        let (half_extent, center) = self.plane();
+        let side = (center.abs() + half_extent).length();
+        if self.is_perspective() {
+            far * side.hypot(1.0)
+        } else {
+            side.hypot(far.abs().max(near.abs()))
+        }
+    }
+
     /// View depths of the near and the far plane [m].
     pub fn planes(&self) -> [f64; 2] {
         let (Projection::Perspective { near, far, .. }

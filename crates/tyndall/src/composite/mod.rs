@@ -1,7 +1,7 @@
 //! The picture behind the medium: background * transmittance + in-scattered light, `composite.wgsl`.
 
 use crate::gpu::{
-    program::full_screen,
+    program::Raster,
     shader::{self, FRAME_MODULES},
 };
 
@@ -40,15 +40,8 @@ impl Composite {
                 }),
                 write_mask: wgpu::ColorWrites::ALL,
             };
-            full_screen(
-                device,
-                entry_point,
-                &module,
-                entry_point,
-                &layout,
-                target,
-                &[],
-            )
+            let raster = Raster::full_screen(target);
+            raster.pipeline(device, entry_point, &module, entry_point, &layout, &[])
         };
         Self {
             attenuate: pipeline("composite_attenuate", component(Dst, Zero)),

@@ -4,7 +4,7 @@ use std::num::NonZeroU64;
 
 use super::uniforms::{FrameUniform, LightUniform};
 
-/// A uniform block of this type at `binding`, for fragments and compute.
+/// A uniform block of this type at `binding`, for all stages.
 pub(crate) fn uniform<T>(binding: u32) -> wgpu::BindGroupLayoutEntry {
     entry(
         binding,
@@ -16,14 +16,18 @@ pub(crate) fn uniform<T>(binding: u32) -> wgpu::BindGroupLayoutEntry {
     )
 }
 
-/// A storage buffer at `binding`.
+/// A storage buffer at `binding`; vertices only ever read one.
 pub(crate) fn storage(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEntry {
     let buffer = wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Storage { read_only },
         has_dynamic_offset: false,
         min_binding_size: None,
     };
-    entry(binding, buffer)
+    let mut entry = entry(binding, buffer);
+    if !read_only {
+        entry.visibility.remove(wgpu::ShaderStages::VERTEX);
+    }
+    entry
 }
 
 /// A 2-D texture of floats at `binding` that is read texel by texel.
@@ -46,7 +50,7 @@ pub(crate) fn airlight(binding: u32) -> wgpu::BindGroupLayoutEntry {
 fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
         ty,
         count: None,
     }

@@ -14,6 +14,11 @@ pub(crate) enum Work {
     Compute(Vec<Dispatch>),
     /// Triangles over the whole of a picture each, whose former content is lost.
     FullScreen(Vec<FullScreen>),
+    /// Draws one after the other, onto a cleared picture.
+    Draw {
+        target: wgpu::TextureView,
+        draws: Vec<Draw>,
+    },
 }
 
 /// One dispatch.
@@ -30,6 +35,22 @@ pub(crate) struct FullScreen {
     /// Bind groups 0, 1 and so on.
     pub(crate) groups: Vec<wgpu::BindGroup>,
     pub(crate) target: wgpu::TextureView,
+}
+
+/// One draw.
+pub(crate) struct Draw {
+    pub(crate) pipeline: wgpu::RenderPipeline,
+    /// Bind groups 0, 1 and so on.
+    pub(crate) groups: Vec<wgpu::BindGroup>,
+    pub(crate) vertices: Vertices,
+}
+
+/// How much a draw draws.
+pub(crate) enum Vertices {
+    /// So many vertices, so many times.
+    Direct { vertices: u32, instances: u32 },
+    /// What stands in a buffer at an offset [bytes].
+    Indirect(wgpu::Buffer, u64),
 }
 
 impl Pass {
@@ -72,7 +93,55 @@ impl Pass {
                     draw.record(&self.name, encoder, stamps);
                 }
             }
+            Work::Draw { target, draws } => {
+                let stamps = timer.and_then(|t| t.render_pass(&self.name));
+                let mut pass = begin(&self.name, encoder, target, stamps);
+                for draw in draws {
+                    set(&mut pass, &draw.pipeline, &draw.groups);
+                    match &draw.vertices {
+                        Vertices::Direct {
+                            vertices,
+                            instances,
+                        } => pass.draw(0..*vertices, 0..*instances),
+                        Vertices::Indirect(buffer, offset) => pass.draw_indirect(buffer, *offset),
+                    }
+                }
+            }
         }
+    }
+}
+
+/// A render pass onto a cleared picture.
+fn begin<'e>(
+    name: &str,
+    encoder: &'e mut wgpu::CommandEncoder,
+    target: &wgpu::TextureView,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'e> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(name),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        timestamp_writes,
+        ..Default::default()
+    })
+}
+
+fn set(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    groups: &[wgpu::BindGroup],
+) {
+    pass.set_pipeline(pipeline);
+    for (i, group) in groups.iter().enumerate() {
+        pass.set_bind_group(i as u32, group, &[]);
     }
 }
 
@@ -83,24 +152,8 @@ impl FullScreen {
         encoder: &mut wgpu::CommandEncoder,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(name),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            timestamp_writes,
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipeline);
-        for (i, group) in self.groups.iter().enumerate() {
-            pass.set_bind_group(i as u32, group, &[]);
-        }
+        let mut pass = begin(name, encoder, &self.target, timestamp_writes);
+        set(&mut pass, &self.pipeline, &self.groups);
         pass.draw(0..3, 0..1);
     }
 }

@@ -1,7 +1,7 @@
 //! Buffers and textures that a view keeps from frame to frame, by name: made when they are first asked for, made anew
 //! when they are asked for with another size or use, dropped when a frame does without them.
 
-use std::collections::HashMap;
+use std::{any::Any, collections::HashMap};
 
 /// Whose something is (a light's index, or the view's own) and what it is called.
 pub(crate) type Key = (Option<usize>, &'static str);
@@ -20,12 +20,17 @@ struct Held {
 enum Resource {
     Buffer(wgpu::Buffer),
     Texture(wgpu::Texture),
+    Note(Box<dyn Any + Send + Sync>),
 }
 
 impl Pool {
-    /// Begins a frame.
-    pub(crate) fn begin(&mut self) {
+    /// Begins a frame. Unless the passes of the one before ran, what was noted then does not hold.
+    pub(crate) fn begin(&mut self, before_ran: bool) {
         self.frame += 1;
+        if !before_ran {
+            self.held
+                .retain(|_, held| !matches!(held.resource, Resource::Note(_)));
+        }
     }
 
     /// Ends a frame: what it did not ask for is dropped.
@@ -107,9 +112,24 @@ impl Pool {
         buffer
     }
 
+    /// Notes a value, and says whether the frame before noted the same: what its passes wrote then still stands in
+    /// buffers and textures that both frames ask for.
+    pub(crate) fn is_as_noted<T>(&mut self, key: Key, value: T) -> bool
+    where
+        T: PartialEq + Send + Sync + 'static,
+    {
+        let is_same = match self.find(key) {
+            Some(Resource::Note(note)) => note.downcast_ref() == Some(&value),
+            _ => false,
+        };
+        self.hold(key, Resource::Note(Box::new(value)));
+        is_same
+    }
+
     /// Bytes of all that is held.
     pub(crate) fn bytes(&self) -> u64 {
         let bytes = |held: &Held| match &held.resource {
+            Resource::Note(_) => 0,
             Resource::Buffer(buffer) => buffer.size(),
             Resource::Texture(texture) => {
                 let texel = texture.format().block_copy_size(None).unwrap_or(0);

@@ -11,40 +11,64 @@ use super::{
     uniforms::LightVariant,
 };
 
-/// A full-screen pipeline that writes `target`.
-pub(crate) fn full_screen(
-    device: &wgpu::Device,
-    label: &str,
-    module: &wgpu::ShaderModule,
-    entry_point: &str,
-    layout: &wgpu::PipelineLayout,
-    target: wgpu::ColorTargetState,
-    constants: &[(&str, f64)],
-) -> wgpu::RenderPipeline {
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(label),
-        layout: Some(layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("frame_full_screen"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants,
+/// Where a render pipeline's triangles come from and go to.
+#[derive(Clone)]
+pub(crate) struct Raster {
+    /// Entry point of the vertex stage.
+    pub(crate) vertex: &'static str,
+    pub(crate) topology: wgpu::PrimitiveTopology,
+    pub(crate) target: wgpu::ColorTargetState,
+}
+
+impl Raster {
+    /// One triangle over the whole of the target.
+    pub(crate) fn full_screen(target: wgpu::ColorTargetState) -> Self {
+        Self {
+            vertex: "frame_full_screen",
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            target,
+        }
+    }
+
+    /// A pipeline that draws so; vertices come from shaders alone, both sides are drawn, no depth.
+    pub(crate) fn pipeline(
+        &self,
+        device: &wgpu::Device,
+        label: &str,
+        module: &wgpu::ShaderModule,
+        entry_point: &str,
+        layout: &wgpu::PipelineLayout,
+        constants: &[(&str, f64)],
+    ) -> wgpu::RenderPipeline {
+        let compilation_options = wgpu::PipelineCompilationOptions {
+            constants,
+            ..Default::default()
+        };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(layout),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some(self.vertex),
+                compilation_options: compilation_options.clone(),
+                buffers: &[],
+            },
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(entry_point),
+                compilation_options,
+                targets: &[Some(self.target.clone())],
+            }),
+            primitive: wgpu::PrimitiveState {
+                topology: self.topology,
                 ..Default::default()
             },
-            targets: &[Some(target)],
-        }),
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        multiview_mask: None,
-        cache: None,
-    })
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
 }
 
 /// A shader over bind groups 0 (frame), 1 (light) and 2 (its own).
@@ -54,8 +78,8 @@ pub(crate) struct Recipe {
     module: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     own: wgpu::BindGroupLayout,
-    /// What a full-screen pass writes.
-    target: wgpu::TextureFormat,
+    /// How a render pass draws.
+    raster: Raster,
     /// Overrides besides the light's.
     constants: Vec<(&'static str, f64)>,
 }
@@ -83,13 +107,12 @@ impl Pipeline for wgpu::ComputePipeline {
 
 impl Pipeline for wgpu::RenderPipeline {
     fn make(device: &wgpu::Device, recipe: &Recipe, constants: &[(&str, f64)]) -> Self {
-        full_screen(
+        recipe.raster.pipeline(
             device,
             recipe.label,
             &recipe.module,
             recipe.entry_point,
             &recipe.layout,
-            recipe.target.into(),
             constants,
         )
     }
@@ -103,7 +126,7 @@ pub(crate) struct Program<P> {
 
 /// A program of dispatches.
 pub(crate) type ComputeProgram = Program<wgpu::ComputePipeline>;
-/// A program that computes a picture.
+/// A program that draws a picture.
 pub(crate) type ScreenProgram = Program<wgpu::RenderPipeline>;
 
 impl<P: Pipeline> Program<P> {
@@ -136,7 +159,7 @@ impl<P: Pipeline> Program<P> {
                 immediate_size: 0,
             }),
             own,
-            target: shared.output,
+            raster: Raster::full_screen(shared.output.into()),
             constants: Vec::new(),
         };
         Self {
@@ -147,7 +170,13 @@ impl<P: Pipeline> Program<P> {
 
     /// The same, but full-screen passes write this format.
     pub(crate) fn writing(mut self, format: wgpu::TextureFormat) -> Self {
-        self.recipe.target = format;
+        self.recipe.raster.target = format.into();
+        self
+    }
+
+    /// The same, but drawing so.
+    pub(crate) fn drawing(mut self, raster: Raster) -> Self {
+        self.recipe.raster = raster;
         self
     }
 

@@ -3,14 +3,14 @@
 use super::{
     airlight::AirlightPictures,
     layout::{self, Absent},
-    pass::{Dispatch, FullScreen, Pass, Work},
+    pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work},
     pool::Pool,
     program::{ComputeProgram, ScreenProgram},
     uniforms::LightVariant,
 };
 use crate::{
     camera::CameraRays,
-    effect::LightInputs,
+    effect::{Count, CountValue, LightInputs},
     frame::{Frame, Light},
 };
 
@@ -64,6 +64,8 @@ pub(crate) struct LightScope<'a> {
     pub(crate) light_group: wgpu::BindGroup,
     /// What the last pass writes: the lights so far and this one (rgb), and the mean transmittance (a).
     pub(crate) target: wgpu::TextureView,
+    /// What the frame's passes count.
+    pub(crate) counts: &'a mut Vec<Count>,
 }
 
 impl LightScope<'_> {
@@ -171,6 +173,26 @@ impl LightScope<'_> {
             groups: self.groups(program.bind(self.device, resources)),
             target,
         }
+    }
+
+    /// One draw of a mesh over the frame, the light and `resources`.
+    pub(crate) fn draw_mesh(
+        &self,
+        program: &ScreenProgram,
+        resources: &[wgpu::BindingResource<'_>],
+        vertices: Vertices,
+    ) -> Draw {
+        Draw {
+            pipeline: program.get(self.device, self.variant),
+            groups: self.groups(program.bind(self.device, resources)),
+            vertices,
+        }
+    }
+
+    /// Lists a number of this light.
+    pub(crate) fn count(&mut self, name: &str, value: CountValue) {
+        let name = self.pass_name(name);
+        self.counts.push(Count { name, value });
     }
 
     /// A pass's name with its light's index.

@@ -273,7 +273,7 @@ mod tests {
 
     use crate::{
         gpu::shader::{FRAME_MODULES, LIGHT_MODULES, join},
-        techniques::ray_march,
+        techniques::{light_volume, ray_march},
     };
 
     macro_rules! layout {
@@ -284,7 +284,14 @@ mod tests {
 
     #[test]
     fn blocks_are_laid_out_as_in_wgsl() {
-        let text = join(&[FRAME_MODULES, LIGHT_MODULES, &[ray_march::gpu::RAY_MARCH]]);
+        let own = [
+            ray_march::gpu::RAY_MARCH,
+            light_volume::gpu::CUBE,
+            light_volume::gpu::MESH,
+            light_volume::gpu::SPLITS,
+            light_volume::gpu::GROW,
+        ];
+        let text = join(&[FRAME_MODULES, LIGHT_MODULES, &own]);
         let module = naga::front::wgsl::parse_str(&text).expect("the joined shader parses");
         let ours = [
             ("Frame", layout!(FrameUniform: camera, medium)),
@@ -305,6 +312,15 @@ mod tests {
             (
                 "RayMarchParams",
                 layout!(ray_march::gpu::ParamsUniform: steps, spacing),
+            ),
+            (
+                "LightVolumeParams",
+                layout!(light_volume::gpu::ParamsUniform: world_from_clip, far_plane, cells, pitch, rows, tolerance,
+                    capacity, mirrored),
+            ),
+            (
+                "LightVolumeStep",
+                layout!(light_volume::tessellation::Step: spacing, is_edge),
             ),
         ];
         for (name, (size, fields)) in ours {

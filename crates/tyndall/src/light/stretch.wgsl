@@ -31,6 +31,14 @@ fn stretch_plain(ray: Ray, a: f32, b: f32) -> vec3f {
     return stretch_spot(ray, vec2f(a, b));
 }
 
+// As `stretch_plain`, of stretches so short that differences of tables are less exact than quadrature.
+fn stretch_short(ray: Ray, a: f32, b: f32) -> vec3f {
+    if LIGHT_KIND == LIGHT_DIRECTIONAL {
+        return stretch_plain(ray, a, b);
+    }
+    return stretch_quadrature(ray, vec2f(a, b));
+}
+
 // A light that shines evenly: the airlight tables.
 fn stretch_point(place: AirlightLight, stretch: vec2f) -> vec3f {
     var sum = vec3f(0.0);
@@ -49,15 +57,15 @@ fn stretch_spot(ray: Ray, stretch: vec2f) -> vec3f {
     }
     let inner = light_cone_interval(from_light, ray.direction, light.direction, light.cos_inner, outer);
     if inner.x >= inner.y {
-        return stretch_fading(ray, outer);
+        return stretch_quadrature(ray, outer);
     }
     return stretch_point(stretch_light(ray), inner)
-        + stretch_fading(ray, vec2f(outer.x, inner.x))
-        + stretch_fading(ray, vec2f(inner.y, outer.y));
+        + stretch_quadrature(ray, vec2f(outer.x, inner.x))
+        + stretch_quadrature(ray, vec2f(inner.y, outer.y));
 }
 
-// Between the inner and the outer cone: Gauss-Legendre over xi, s = t_p + h tan(xi) (Kulla & Fajardo 2012).
-fn stretch_fading(ray: Ray, stretch: vec2f) -> vec3f {
+// A local light, where its cone has no kink: Gauss-Legendre over xi, s = t_p + h tan(xi) (Kulla & Fajardo 2012).
+fn stretch_quadrature(ray: Ray, stretch: vec2f) -> vec3f {
     if stretch.x >= stretch.y {
         return vec3f(0.0);
     }
@@ -82,7 +90,10 @@ fn stretch_fading(ray: Ray, stretch: vec2f) -> vec3f {
 
 // exp(-sigma_t (s + d)) sigma_s rho falloff at xi, where s + d = t_p + h tan(pi / 4 + xi / 2).
 fn stretch_density(place: AirlightLight, axis: vec2f, xi: f32) -> vec3f {
-    let falloff = light_spot_falloff(dot(vec2f(cos(xi), sin(xi)), axis), light.cos_inner, light.cos_outer);
+    var falloff = 1.0;
+    if LIGHT_KIND == LIGHT_SPOT {
+        falloff = light_spot_falloff(dot(vec2f(cos(xi), sin(xi)), axis), light.cos_inner, light.cos_outer);
+    }
     let path = place.projection + place.height * tan(0.25 * PI + 0.5 * xi);
     return falloff * medium_scattering(-sin(xi)) * transmittance(frame.medium.sigma_t, path);
 }

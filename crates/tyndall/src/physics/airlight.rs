@@ -297,7 +297,7 @@ mod tests {
         }
     }
 
-    /// f32 against f64 over the same texels: rounding of the differences, relative to the whole ray. Measured 8e-4 on lavapipe, whose asin is coarse.
+    /// f32 against f64 over the same texels: rounding of the differences, relative to the whole ray. Measured 1.7e-5 on lavapipe.
     #[cfg(feature = "gpu")]
     #[test]
     fn wgsl_twin_agrees() {
@@ -313,6 +313,7 @@ mod tests {
         let found = wgsl::evaluate_with(
             gpu,
             &[
+                crate::gpu::shader::PHASE,
                 crate::gpu::shader::TRANSMITTANCE,
                 crate::gpu::shader::AIRLIGHT,
                 "@group(0) @binding(0) var airlight_table: texture_2d_array<f32>;",
@@ -322,6 +323,7 @@ mod tests {
             &inputs,
         )
         .expect("the shader runs");
+        let mut worst = 0.0_f64;
         for (x, found) in inputs.iter().zip(found) {
             let [sigma_t, height, projection, a, length] = x.map(f64::from);
             let sigma_t = 10.0_f64.powf(sigma_t);
@@ -335,7 +337,8 @@ mod tests {
             let exact = table.segment(sigma_t, light, [a, a + length]);
             let whole = table.segment(sigma_t, light, [0.0, 60.0]);
             let error = (f64::from(found[0]) - exact).abs() / whole;
-            assert!(error < 2e-3, "{x:?}: {} {exact}, {error:.1e}", found[0]);
+            worst = worst.max(error);
         }
+        assert!(worst < 5e-5, "{worst:.1e}");
     }
 }

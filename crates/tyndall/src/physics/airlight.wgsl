@@ -18,9 +18,10 @@ fn airlight_tangent(light: AirlightLight, s: f32) -> f32 {
     return select(light.height / (d - x), (x + d) / light.height, x > 0.0);
 }
 
-// x with x^2 (3 - 2 x) = v / (1 + v), for v >= 0.
+// x with x^2 (3 - 2 x) = v / (1 + v), for v >= 0. The arc sine of (1 - v) / (1 + v), as a tangent's, for arc sines are
+// coarse.
 fn airlight_axis(v: f32) -> f32 {
-    return 0.5 - sin(asin((1.0 - v) / (1.0 + v)) / 3.0);
+    return 0.5 - sin(PI / 6.0 - 2.0 / 3.0 * atan(sqrt(v)));
 }
 
 fn airlight_far_length(t: f32) -> f32 {

@@ -1,6 +1,7 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
 pub mod incremental;
+pub mod light_volume;
 pub mod min_max;
 mod params;
 pub mod ray_march;
@@ -31,6 +32,8 @@ pub enum Technique {
     MinMax(min_max::Params),
     /// Incremental integration.
     Incremental(incremental::Params),
+    /// Polygonal light volumes.
+    LightVolume(light_volume::Params),
 }
 
 /// Which backends a technique runs on.
@@ -89,6 +92,7 @@ pub struct TechniqueInfo {
 pub const TABLE: &[TechniqueInfo] = &[
     ray_march::INFO,
     min_max::INFO,
+    light_volume::INFO,
     incremental::INFO,
     reference::INFO,
 ];
@@ -112,6 +116,7 @@ impl Technique {
             Self::RayMarch(_) => &ray_march::INFO,
             Self::MinMax(_) => &min_max::INFO,
             Self::Incremental(_) => &incremental::INFO,
+            Self::LightVolume(_) => &light_volume::INFO,
         }
     }
 
@@ -122,6 +127,7 @@ impl Technique {
             Self::RayMarch(p) => p.list(),
             Self::MinMax(p) => p.list(),
             Self::Incremental(p) => p.list(),
+            Self::LightVolume(p) => p.list(),
         }
     }
 
@@ -135,6 +141,7 @@ impl Technique {
             Self::RayMarch(p) => p.set(key, value),
             Self::MinMax(p) => p.set(key, value),
             Self::Incremental(p) => p.set(key, value),
+            Self::LightVolume(p) => p.set(key, value),
         }
     }
 
@@ -148,6 +155,10 @@ impl Technique {
             Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
+            Self::LightVolume(_) => Err(PrepareError::Unsupported {
+                technique: light_volume::INFO.name,
+                what: "its work on the CPU".into(),
+            }),
         }
     }
 }
@@ -158,6 +169,7 @@ impl Technique {
 pub(crate) struct Programs {
     ray_march: OnceLock<ScreenProgram>,
     min_max: OnceLock<min_max::gpu::Programs>,
+    light_volume: OnceLock<light_volume::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -165,13 +177,16 @@ impl Technique {
     /// Checks what the device's limits say about a light, before anything is made.
     pub(crate) fn check_gpu(
         &self,
-        _limits: &wgpu::Limits,
+        limits: &wgpu::Limits,
         _size: [u32; 2],
-        _index: usize,
-        _light: &Light,
-        _inputs: &LightInputs<'_>,
+        index: usize,
+        light: &Light,
+        inputs: &LightInputs<'_>,
     ) -> Result<(), PrepareError> {
-        Ok(())
+        match self {
+            Self::LightVolume(p) => light_volume::gpu::check(p, limits, index, light, inputs),
+            _ => Ok(()),
+        }
     }
 
     /// The passes of one light on the GPU.
@@ -187,6 +202,12 @@ impl Technique {
                 let programs = &programs.min_max;
                 let programs = programs.get_or_init(|| min_max::gpu::Programs::new(device, shared));
                 min_max::gpu::passes(p, programs, scope)
+            }
+            Self::LightVolume(p) => {
+                let programs = &programs.light_volume;
+                let programs =
+                    programs.get_or_init(|| light_volume::gpu::Programs::new(device, shared));
+                light_volume::gpu::passes(p, programs, scope)
             }
             // Refused by the table: they have no GPU side.
             Self::Reference(_) | Self::Incremental(_) => Vec::new(),

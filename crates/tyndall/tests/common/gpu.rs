@@ -64,6 +64,7 @@ impl Uploaded {
                 shadow_map: shadow_map.as_ref(),
                 glass: glass.as_ref(),
                 texture: texture.as_ref(),
+                ..LightInputs::default()
             })
             .collect()
     }

@@ -22,6 +22,7 @@ const MAP: u32 = 64;
 const GLASS_LAYERS: u32 = 2;
 
 /// A frame and its pictures.
+#[derive(Clone)]
 pub(crate) struct Stage {
     pub(crate) name: String,
     pub(crate) frame: Frame,
@@ -260,11 +261,11 @@ fn shadow_map(faces: u32, reversed: bool, perspective: bool) -> ShadowMap {
     }
 }
 
-/// Panes of random tints before the blocks and behind them.
+/// Panes of random tints before the blocks and behind them; a texel's layers come nearest first, empty ones last.
 fn glass_map(faces: u32, reversed: bool, perspective: bool) -> GlassMap {
     let side = MAP / 2;
-    let texel = |i: u32| {
-        let (plane, row, column) = (i / (side * side), i / side % side, i % side);
+    let empty = [1.0, 1.0, 1.0, if reversed { 0.0 } else { 1.0 }];
+    let pane = |plane: u32, row: u32, column: u32| {
         let layer = plane % GLASS_LAYERS;
         let cell = (plane * 57 + row / 4) * 29 + column / 4;
         let distance = 0.1 + 0.4 * layer as f32 + 0.4 * noise(cell);
@@ -278,11 +279,14 @@ fn glass_map(faces: u32, reversed: bool, perspective: bool) -> GlassMap {
         } else {
             1.0 - near_is_one
         };
-        if noise(cell + 99) < 0.5 {
-            [1.0, 1.0, 1.0, if reversed { 0.0 } else { 1.0 }]
-        } else {
-            [noise(cell + 1), noise(cell + 2), noise(cell + 3), depth]
-        }
+        (noise(cell + 99) >= 0.5)
+            .then(|| [noise(cell + 1), noise(cell + 2), noise(cell + 3), depth])
+    };
+    let texel = |i: u32| {
+        let (plane, row, column) = (i / (side * side), i / side % side, i % side);
+        let first = plane - plane % GLASS_LAYERS;
+        let mut panes = (first..first + GLASS_LAYERS).filter_map(|p| pane(p, row, column));
+        panes.nth((plane - first) as usize).unwrap_or(empty)
     };
     GlassMap {
         size: [side, side],

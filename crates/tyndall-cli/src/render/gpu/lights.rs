@@ -64,6 +64,7 @@ pub(super) fn light_inputs(lights: &[LightTargets]) -> Vec<LightInputs<'_>> {
             shadow_map: light.shadow_map.as_ref().map(ShadowMapTarget::view),
             glass: light.glass.as_ref().map(GlassMapTarget::view),
             texture: light.texture.as_ref(),
+            ..LightInputs::default()
         })
         .collect()
 }

@@ -6,7 +6,7 @@ mod lights;
 mod timestamps;
 mod world;
 
-use tyndall::{Effect, EffectOptions, EffectView, FrameInputs, OutputPrecision};
+use tyndall::{Count, CountValue, Effect, EffectOptions, EffectView, FrameInputs, OutputPrecision};
 use tyndall_scene::gpu::readback;
 use wgpu::{CommandEncoder, Device, Queue, Texture, TextureFormat};
 
@@ -102,6 +102,7 @@ impl Pipeline {
                 .collect(),
             passes: self.timestamps.read(&self.device, &self.queue)?,
             bytes: self.bytes(),
+            counts: counts(&self.view, &self.device, &self.queue)?,
         })
     }
 
@@ -145,6 +146,26 @@ impl Pipeline {
         let color = ("colour target", self.color.bytes());
         vec![effect, g_buffer, color, light_maps]
     }
+}
+
+/// What the technique counts, of the frame that was recorded last. Waits for the device.
+///
+/// # Errors
+/// [`Failure::Device`] where the device is lost.
+pub(crate) fn counts(
+    view: &EffectView,
+    device: &Device,
+    queue: &Queue,
+) -> Result<Vec<(String, u64)>, Failure> {
+    let value = |value: &CountValue| match value {
+        CountValue::Known(known) => Ok(*known),
+        CountValue::Written { buffer, offset } => {
+            readback::buffer_u32(device, queue, buffer, *offset).map(u64::from)
+        }
+    };
+    let count = |count: &Count| Ok((count.name.clone(), value(&count.value)?));
+    let counts: Result<_, readback::ReadbackError> = view.counts().iter().map(count).collect();
+    counts.map_err(Failure::device)
 }
 
 /// The effect, with an output that is exact enough to be measured.
