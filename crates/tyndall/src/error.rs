@@ -40,4 +40,16 @@ pub enum PrepareError {
         /// What it cannot do.
         what: String,
     },
+    /// The frame needs more than the device has.
+    #[error("{what}: {needed} bytes are more than the device's {name}, {limit}")]
+    Limit {
+        /// What needs them.
+        what: String,
+        /// Bytes it needs.
+        needed: u64,
+        /// Bytes there may be.
+        limit: u64,
+        /// The device's limit, by its name in WebGPU.
+        name: &'static str,
+    },
 }

@@ -188,6 +188,10 @@ impl Shot {
         let folder = folder(file);
         let expected = "a path or builtin:NAME";
         let scene = section.require("scene", expected)?;
+        let lights = section
+            .get("light")
+            .map(|field| light::read_all(&field, folder))
+            .transpose()?;
         Ok(Self {
             file: file.to_owned(),
             scene: SceneSource::within(scene.text(expected)?, folder),
@@ -201,15 +205,15 @@ impl Shot {
                     path: "camera".to_owned(),
                 }),
             },
-            lights: section
-                .get("light")
-                .map(|field| light::read_all(&field, folder))
-                .transpose()?,
+            technique: technique::read(
+                section.get("technique").as_ref(),
+                lights.as_deref().unwrap_or_default(),
+            )?,
+            lights,
             medium: section
                 .get("medium")
                 .map(|field| medium::read(&field))
                 .transpose()?,
-            technique: technique::read(section.get("technique").as_ref())?,
             temporal: section
                 .get("temporal")
                 .map(|field| animation::read_temporal(&field))

@@ -1,8 +1,9 @@
 //! `[technique]`: how the integral is computed.
 
-use tyndall::techniques::{self, ParamError, TABLE, Technique};
+use tyndall::techniques::{self, LightKind, ParamError, TABLE, Technique};
 
 use super::{
+    LightSpec,
     error::{Problem, ShotError, one_of, similar},
     reader::{Field, Section},
     tree::{Entry, Place, Table, Value},
@@ -36,13 +37,19 @@ pub(super) fn replace(root: &mut Table, name: &str) {
     root.insert("technique".to_owned(), table);
 }
 
-/// Reads `[technique]`; the default technique where there is none.
-pub(super) fn read(field: Option<&Field<'_>>) -> Result<Technique, ShotError> {
+/// Reads `[technique]`; where it names none, the first that can do these lights.
+pub(super) fn read(
+    field: Option<&Field<'_>>,
+    lights: &[LightSpec],
+) -> Result<Technique, ShotError> {
     let section = field.map(Field::section).transpose()?;
     let name = section.as_ref().and_then(|section| section.get("name"));
     let mut technique = match &name {
         Some(field) => named(field)?,
-        None => Technique::default(),
+        None => {
+            let kinds: Vec<_> = lights.iter().map(|l| LightKind::of(&l.emitter)).collect();
+            Technique::default_for(&kinds)
+        }
     };
     let parameters = section.iter().flat_map(Section::fields);
     for (key, field) in parameters.filter(|(key, _)| *key != "name") {

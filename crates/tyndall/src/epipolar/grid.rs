@@ -28,7 +28,7 @@ use crate::{
 };
 
 /// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
-const DEFAULT_SLICES: usize = 1024;
+pub(super) const DEFAULT_SLICES: usize = 1024;
 
 /// View rays nearer to the axis are not decomposed: `SVD_LEAST_SINE` of `svd_stretch.wgsl`.
 const SVD_LEAST_SINE: f64 = 0.1;

@@ -33,6 +33,15 @@ pub struct Resolution {
 }
 
 impl Resolution {
+    /// The most slices there may be.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn most_slices(&self) -> usize {
+        match self.slices {
+            0 => grid::DEFAULT_SLICES,
+            n => n as usize,
+        }
+    }
+
     /// Light rays a slice for a map of so many texels a side: a power of two.
     pub(crate) fn samples_of(&self, side: usize) -> usize {
         let samples = match self.samples {

@@ -90,8 +90,8 @@ pub struct TechniqueInfo {
 
 /// Every technique, in the order they are listed to people; the first is the default.
 pub const TABLE: &[TechniqueInfo] = &[
-    ray_march::INFO,
     min_max::INFO,
+    ray_march::INFO,
     light_volume::INFO,
     incremental::INFO,
     reference::INFO,
@@ -107,6 +107,15 @@ impl Technique {
     /// The technique of this name with default parameters.
     pub fn from_name(name: &str) -> Option<Self> {
         TABLE.iter().find(|t| t.name == name).map(|t| (t.default)())
+    }
+
+    /// The first of the table that can do lights of these kinds, with default parameters.
+    pub fn default_for(kinds: &[LightKind]) -> Self {
+        let can = |info: &&TechniqueInfo| kinds.iter().all(|kind| info.lights.contains(kind));
+        TABLE
+            .iter()
+            .find(can)
+            .map_or_else(Self::default, |info| (info.default)())
     }
 
     /// Its entry in the [`TABLE`].
@@ -185,6 +194,7 @@ impl Technique {
     ) -> Result<(), PrepareError> {
         match self {
             Self::LightVolume(p) => light_volume::gpu::check(p, limits, index, light, inputs),
+            Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
             _ => Ok(()),
         }
     }

@@ -2,14 +2,15 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Integrator, Params, svd};
+use super::{Integrator, Params, Show, svd};
 use crate::{
     effect::LightInputs,
     epipolar::{
         gpu::{EPIPOLAR, EpipolarUniform},
         grid::{EpipolarGrid, GridScene},
     },
-    frame::Emitter,
+    error::PrepareError,
+    frame::{Emitter, Light},
     gpu::{
         layout,
         pass::Pass,
@@ -28,6 +29,7 @@ use crate::{
 
 pub(crate) const TREE: &str = include_str!("tree.wgsl");
 pub(crate) const RECTIFY: &str = include_str!("rectify.wgsl");
+const SHOW: &str = include_str!("show.wgsl");
 const TRAVERSE: &str = include_str!("traverse.wgsl");
 const WALK: &str = include_str!("../../shadow/walk.wgsl");
 
@@ -64,6 +66,7 @@ pub(crate) struct Programs {
     /// Of the analytic and of the svd integrator.
     tint_rows: [ComputeProgram; 2],
     traverse: [ScreenProgram; 2],
+    show: ScreenProgram,
 }
 
 impl Programs {
@@ -87,37 +90,40 @@ impl Programs {
             let modules = [EPIPOLAR, SVD, TINT, TINT_ROWS];
             ComputeProgram::new(device, shared, "tint rows", &modules, "tint_rows", &own)
         };
+        let own = [
+            layout::uniform::<EpipolarUniform>(0),
+            layout::storage(1, true),
+            layout::airlight(2),
+            layout::storage(3, true),
+            layout::storage(4, true),
+            layout::uniform::<SvdUniform>(5),
+            layout::storage(6, true),
+        ];
+        let traversal: &[&str] = &[
+            AIRLIGHT,
+            STRETCH,
+            EPIPOLAR,
+            WALK,
+            TREE,
+            SVD,
+            TINT,
+            TINT_MEAN,
+            SVD_STRETCH,
+            GLASS,
+        ];
         let traverse = || {
-            let own = [
-                layout::uniform::<EpipolarUniform>(0),
-                layout::storage(1, true),
-                layout::airlight(2),
-                layout::storage(3, true),
-                layout::storage(4, true),
-                layout::uniform::<SvdUniform>(5),
-                layout::storage(6, true),
-            ];
-            let modules = [
-                AIRLIGHT,
-                STRETCH,
-                EPIPOLAR,
-                WALK,
-                TREE,
-                SVD,
-                TINT,
-                TINT_MEAN,
-                SVD_STRETCH,
-                GLASS,
-                TRAVERSE,
-            ];
+            let modules = [traversal, &[TRAVERSE]].concat();
             ScreenProgram::new(device, shared, "traverse", &modules, "traverse", &own)
         };
+        let show = [traversal, &[TRAVERSE, SHOW]].concat();
+        let show_own = [&own[..], &[layout::uniform::<[u32; 4]>(7)]].concat();
         Self {
             pyramid: pyramid::Programs::new(device, shared),
             rectify: rectify(),
             rectify_glass: rectify().with("RECTIFY_GLASS", 1.0),
             tint_rows: [0.0, 1.0].map(|svd| tint_rows().with("SVD", svd)),
             traverse: [0.0, 1.0].map(|svd| traverse().with("SVD", svd)),
+            show: ScreenProgram::new(device, shared, "show", &show, "show", &show_own),
         }
     }
 }
@@ -174,9 +180,58 @@ pub(crate) fn passes(
         svd.as_entire_binding(),
         svd_factors.as_entire_binding(),
     ];
-    let program = &programs.traverse[usize::from(is_svd)];
-    passes.push(scope.full_screen(program, "traverse", &resources));
+    if params.show == Show::Light {
+        let program = &programs.traverse[usize::from(is_svd)];
+        passes.push(scope.full_screen(program, "traverse", &resources));
+    } else {
+        let what = scope.uniform("show", &[params.show as u32, 0, 0, 0]);
+        let resources = [&resources[..], &[what.as_entire_binding()]].concat();
+        passes.push(scope.full_screen(&programs.show, "show", &resources));
+    }
     passes
+}
+
+/// Refuses a light whose buffers would be larger than the device binds.
+pub(crate) fn check(
+    params: &Params,
+    limits: &wgpu::Limits,
+    index: usize,
+    light: &Light,
+    inputs: &LightInputs<'_>,
+) -> Result<(), PrepareError> {
+    let side = inputs
+        .shadow_map
+        .map_or(1, |map| map.texture().width().max(map.texture().height()));
+    let samples = params.resolution.samples_of(side as usize) as u32;
+    let is_svd = params.integrator == Integrator::Svd;
+    let is_spot = matches!(light.emitter, Emitter::Spot { .. });
+    let grid = EpipolarUniform {
+        slices: params.resolution.most_slices() as u32,
+        samples,
+        tint_columns: if is_svd { SVD_COLUMNS as u32 } else { samples },
+        ..EpipolarUniform::NONE
+    };
+    let is_summed = inputs.texture.is_some() || (is_svd && is_spot);
+    let rank = if is_svd { params.rank } else { 1 };
+    let bytes = Bytes::new(&grid, inputs, is_summed.then_some(rank));
+    let limit = limits.max_storage_buffer_binding_size;
+    for (what, needed) in [
+        ("slices x samples", bytes.nodes),
+        ("slices x samples of its picture", bytes.tint_sums),
+    ] {
+        if needed > limit {
+            return Err(PrepareError::Limit {
+                what: format!(
+                    "{what} of technique `{}` (lights[{index}])",
+                    super::INFO.name
+                ),
+                needed,
+                limit,
+                name: "max_storage_buffer_binding_size",
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Uniform and samples of the svd integrator; nothing for the analytic one.

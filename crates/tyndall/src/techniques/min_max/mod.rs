@@ -62,6 +62,31 @@ pub enum Integrator {
 const INTEGRATORS: &[(&str, Integrator)] =
     &[("analytic", Integrator::Analytic), ("svd", Integrator::Svd)];
 
+/// What is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Show {
+    /// The in-scattered light.
+    #[default]
+    Light = 0,
+    /// Each slice in a colour of its own; black where rays have none.
+    Slices = 1,
+    /// Lit stretches a ray: 0 black, then blue, red, yellow, 16 white.
+    Segments = 2,
+    /// Nodes visited (red) and texels walked (green), in 128ths.
+    Nodes = 3,
+    /// The rectified map: slices from top to bottom, light rays from left to right, S from black to white; red where
+    /// the light never ends.
+    Map = 4,
+}
+
+const SHOWS: &[(&str, Show)] = &[
+    ("light", Show::Light),
+    ("slices", Show::Slices),
+    ("segments", Show::Segments),
+    ("nodes", Show::Nodes),
+    ("map", Show::Map),
+];
+
 /// Parameters of `min-max`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
@@ -71,6 +96,8 @@ pub struct Params {
     pub integrator: Integrator,
     /// Terms of the `svd` integrator (1 to 16).
     pub rank: u32,
+    /// What is drawn; the debug views on the GPU only.
+    pub show: Show,
 }
 
 impl Default for Params {
@@ -79,6 +106,7 @@ impl Default for Params {
             resolution: Resolution::default(),
             integrator: Integrator::default(),
             rank: 4,
+            show: Show::default(),
         }
     }
 }
@@ -119,6 +147,16 @@ impl Parameters for Params {
                 get: |p| Value::Integer(p.rank.into()),
                 set: |p, v| {
                     p.rank = v.integer(1..=16)?;
+                    Some(())
+                },
+            },
+            Param {
+                key: "show",
+                about: "what is drawn: the light, or how it was found (GPU)",
+                range: "\"light\", \"slices\", \"segments\", \"nodes\" or \"map\"",
+                get: |p| word(&p.show, SHOWS),
+                set: |p, v| {
+                    p.show = v.choice(SHOWS)?;
                     Some(())
                 },
             },

@@ -23,7 +23,8 @@ struct TraverseRay {
     place: EpipolarRay,
     slice: u32,
     has_leaves: bool, // none along the axis, or where there are no shadows: rays are walked from end to end
-    end_leaf: u32, // one past the last leaf that lies wholly within the span
+    first_leaf: u32, // that lies wholly within the span
+    end_leaf: u32, // one past the last
     map_ray: ShadowRay,
 }
 
@@ -38,6 +39,8 @@ struct Traversal {
     s: f32,
     walk_end: f32,
     walk: ShadowWalk,
+    nodes: u32, // visited so far
+    texels: u32,
 }
 
 // Where light turns to shadow or shadow to light.
@@ -54,25 +57,33 @@ fn traverse(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return vec4f(before + traverse_light(ray), dot(left, vec3f(1.0 / 3.0)));
 }
 
+// Of a ray that the light reaches over a span.
+fn traverse_view(ray: Ray, span: vec2f) -> TraverseRay {
+    let place = epipolar_ray(epipolar, ray);
+    let has_leaves = SHADOW_KIND != SHADOW_NONE && place.off_axis > epipolar.least_off_axis;
+    let leaves = select(0.0, f32(epipolar.samples), has_leaves);
+    let gammas = vec2f(epipolar_gamma(place, span.x), epipolar_gamma(place, span.y));
+    let ends = (gammas - epipolar.gamma_start) / epipolar.gamma_step;
+    let first = u32(clamp(ceil(ends.x), 0.0, leaves));
+    let last = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
+    return TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_leaves, first, last, shadow_ray(ray));
+}
+
+// What comes before the first leaf is walked.
+fn traverse_start(view: TraverseRay) -> Traversal {
+    let start = view.span.x;
+    let walk_end = select(view.span.y, traverse_leaf(view, view.first_leaf), view.has_leaves);
+    let walk = shadow_walk_from(view.map_ray, traverse_map_size(), start);
+    return Traversal(false, start, 0u, view.first_leaf, true, !view.has_leaves, start, walk_end, walk, 0u, 0u);
+}
+
 fn traverse_light(ray: Ray) -> vec3f {
     let span = light_reach(ray);
     if span.x >= span.y {
         return vec3f(0.0);
     }
-    let place = epipolar_ray(epipolar, ray);
-    let gammas = vec2f(epipolar_gamma(place, span.x), epipolar_gamma(place, span.y));
-    let ends = (gammas - epipolar.gamma_start) / epipolar.gamma_step;
-    let has_slice = place.off_axis > epipolar.least_off_axis;
-    let has_leaves = SHADOW_KIND != SHADOW_NONE && has_slice;
-    let leaves = select(0.0, f32(epipolar.samples), has_leaves);
-    let first = u32(clamp(ceil(ends.x), 0.0, leaves));
-    let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
-    let view = TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_leaves, end_leaf, shadow_ray(ray));
-
-    // What comes before the first leaf is walked.
-    let walk_end = select(span.y, traverse_leaf(view, first), has_leaves);
-    let walk = shadow_walk_from(view.map_ray, traverse_map_size(), span.x);
-    var t = Traversal(false, span.x, 0u, first, true, !has_leaves, span.x, walk_end, walk);
+    let view = traverse_view(ray, span);
+    var t = traverse_start(view);
     var stretches = array<vec2f, TRAVERSE_STRETCHES>();
     var sum = vec3f(0.0);
     var is_done = false;
@@ -145,6 +156,7 @@ fn traverse_nodes(view: TraverseRay, t: ptr<function, Traversal>) -> bool {
         if (*t).walking || ((*t).index << (*t).level) >= view.end_leaf {
             break;
         }
+        (*t).nodes += 1u;
         let node = min_max_nodes[tree_node(epipolar.samples, view.slice, (*t).level, (*t).index)];
         let bright = view.place.b < tree_minimum(node);
         let dark = view.place.b >= tree_maximum(node);
@@ -175,6 +187,7 @@ fn traverse_texels(view: TraverseRay, t: ptr<function, Traversal>) -> TraverseBo
             (*t).walking = false;
             break;
         }
+        (*t).texels += 1u;
         let end = max(s, min(shadow_walk_end((*t).walk), (*t).walk_end));
         let held = shadow_walk_held((*t).walk);
         let margins = vec2f(shadow_walk_margin((*t).walk, held, s), shadow_walk_margin((*t).walk, held, end));
