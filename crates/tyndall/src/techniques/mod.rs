@@ -1,5 +1,6 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
+pub mod epipolar_sampling;
 pub mod incremental;
 pub mod min_max;
 mod params;
@@ -31,6 +32,8 @@ pub enum Technique {
     MinMax(min_max::Params),
     /// Incremental integration.
     Incremental(incremental::Params),
+    /// Epipolar sampling.
+    Epipolar(epipolar_sampling::Params),
 }
 
 /// Which backends a technique runs on.
@@ -89,6 +92,7 @@ pub struct TechniqueInfo {
 pub const TABLE: &[TechniqueInfo] = &[
     ray_march::INFO,
     min_max::INFO,
+    epipolar_sampling::INFO,
     incremental::INFO,
     reference::INFO,
 ];
@@ -112,6 +116,7 @@ impl Technique {
             Self::RayMarch(_) => &ray_march::INFO,
             Self::MinMax(_) => &min_max::INFO,
             Self::Incremental(_) => &incremental::INFO,
+            Self::Epipolar(_) => &epipolar_sampling::INFO,
         }
     }
 
@@ -122,6 +127,7 @@ impl Technique {
             Self::RayMarch(p) => p.list(),
             Self::MinMax(p) => p.list(),
             Self::Incremental(p) => p.list(),
+            Self::Epipolar(p) => p.list(),
         }
     }
 
@@ -135,6 +141,7 @@ impl Technique {
             Self::RayMarch(p) => p.set(key, value),
             Self::MinMax(p) => p.set(key, value),
             Self::Incremental(p) => p.set(key, value),
+            Self::Epipolar(p) => p.set(key, value),
         }
     }
 
@@ -148,6 +155,11 @@ impl Technique {
             Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
+            // The table says it is the GPU's.
+            Self::Epipolar(_) => Err(PrepareError::Unsupported {
+                technique: self.info().name,
+                what: "its work on the CPU".into(),
+            }),
         }
     }
 }
@@ -158,6 +170,7 @@ impl Technique {
 pub(crate) struct Programs {
     ray_march: OnceLock<ScreenProgram>,
     min_max: OnceLock<min_max::gpu::Programs>,
+    epipolar: OnceLock<epipolar_sampling::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -187,6 +200,10 @@ impl Technique {
                 let programs = &programs.min_max;
                 let programs = programs.get_or_init(|| min_max::gpu::Programs::new(device, shared));
                 min_max::gpu::passes(p, programs, scope)
+            }
+            Self::Epipolar(p) => {
+                let make = || epipolar_sampling::gpu::Programs::new(device, shared);
+                epipolar_sampling::gpu::passes(p, programs.epipolar.get_or_init(make), scope)
             }
             // Refused by the table: they have no GPU side.
             Self::Reference(_) | Self::Incremental(_) => Vec::new(),
