@@ -5,6 +5,9 @@
 // that begins at an epipole on the picture is shorter.
 const SCREEN_MARGIN: f32 = 1.0;
 
+// How far from an epipole on the picture lines begin [pixels]: there the light depends on the slice, at the epipole on none.
+const SCREEN_EPIPOLE_RADIUS: f32 = 0.05;
+
 // Where sample 0 of a line lies, and the way from each sample to the next; no way where the picture shows nothing of it.
 struct ScreenLine {
     entry: vec2f,
@@ -14,16 +17,16 @@ struct ScreenLine {
 // The point of the border at a parameter in [0, 1): counter-clockwise from the top left corner, a quarter a side
 // (Yusov 2012, section 6.1).
 fn screen_exit(size: vec2f, border: f32) -> vec2f {
-    let low = vec2f(-SCREEN_MARGIN);
-    let high = size + SCREEN_MARGIN;
     let side = min(u32(border * 4.0), 3u);
     let along = border * 4.0 - f32(side);
+    var place = vec2f(1.0 - along, 0.0);
     switch side {
-        case 0u: { return vec2f(low.x, mix(low.y, high.y, along)); }
-        case 1u: { return vec2f(mix(low.x, high.x, along), high.y); }
-        case 2u: { return vec2f(high.x, mix(high.y, low.y, along)); }
-        default: { return vec2f(mix(high.x, low.x, along), low.y); }
+        case 0u: { place = vec2f(0.0, along); }
+        case 1u: { place = vec2f(along, 1.0); }
+        case 2u: { place = vec2f(1.0, 1.0 - along); }
+        default: {}
     }
+    return place * (size + 2.0 * SCREEN_MARGIN) - SCREEN_MARGIN;
 }
 
 // The unit direction away from the epipole.
@@ -48,10 +51,10 @@ fn screen_epipole_is_inside(size: vec2f, epipole: vec3f) -> bool {
 
 // Where the line to an exit begins: at an epipole on the picture, else where it comes in over the border.
 fn screen_entry(size: vec2f, epipole: vec3f, exit: vec2f) -> vec2f {
-    if screen_epipole_is_inside(size, epipole) {
-        return epipole.xy / epipole.z;
-    }
     let direction = screen_direction(epipole, exit);
+    if screen_epipole_is_inside(size, epipole) {
+        return epipole.xy / epipole.z + SCREEN_EPIPOLE_RADIUS * direction;
+    }
     let back = screen_reach(size, exit, -direction);
     return exit - direction * min(back.x, back.y);
 }
@@ -62,10 +65,38 @@ fn screen_line(size: vec2f, epipole: vec3f, border: f32, samples: u32) -> Screen
     let entry = screen_entry(size, epipole, exit);
     let way = exit - entry;
     let length = length(way);
-    if length < 1e-2 {
+    if length <= 0.5 * SCREEN_EPIPOLE_RADIUS {
         return ScreenLine(entry, vec2f(0.0));
     }
     return ScreenLine(entry, way / length * max(length / f32(samples - 1u), 1.0));
+}
+
+// The two slices that a place lies between, and how near it is to the second.
+struct ScreenSlices {
+    first: u32,
+    second: u32,
+    share: f32,
+}
+
+// The border's parameter of a slice: slices are spread over an arc of the border, (start, length), that all lines of the
+// picture end on; of length 1 it is closed.
+fn screen_slice_border(arc: vec2f, slices: u32, slice: u32) -> f32 {
+    return fract(arc.x + arc.y * (f32(slice) + 0.5) / f32(slices));
+}
+
+fn screen_slices(arc: vec2f, slices: u32, border: f32) -> ScreenSlices {
+    let along = fract(border - arc.x);
+    let count = f32(slices);
+    if arc.y >= 1.0 {
+        let place = along * count - 0.5;
+        let first = u32(floor(place) + count) % slices;
+        return ScreenSlices(first, (first + 1u) % slices, place - floor(place));
+    }
+    // Past the arc's ends by rounding alone.
+    let inside = select(along, 0.0, along > 0.5 + 0.5 * arc.y);
+    let place = clamp(inside / arc.y * count - 0.5, 0.0, count - 1.0);
+    let first = u32(place);
+    return ScreenSlices(first, min(first + 1u, slices - 1u), place - f32(first));
 }
 
 // The border's parameter of the line through a pixel: from the pixel on, away from the epipole, to the border.

@@ -16,9 +16,16 @@ struct EpipolarParams {
     downscale: u32,
     show: u32,
     coarse_size: vec2u, // [pixels]
+    arc: vec2f, // of the border, that slices end on
 }
 
 @group(2) @binding(0) var<uniform> epipolar: EpipolarParams;
+
+// The two slices that a place on the picture [pixels] lies between.
+fn epipolar_slices(place: vec2f) -> ScreenSlices {
+    let border = screen_border(frame.camera.size, epipolar.epipole, place);
+    return screen_slices(epipolar.arc, epipolar.slices, border);
+}
 
 // How much a source at one depth may stand for a point at another (Yusov 2012, section 6.6).
 fn epipolar_similarity(depth: f32, source: f32) -> f32 {
@@ -31,7 +38,14 @@ fn epipolar_similarity(depth: f32, source: f32) -> f32 {
 // Sources of less weight than this together cannot stand for a point.
 const EPIPOLAR_LEAST_WEIGHT: f32 = 0.01;
 
-// The integral of the transmittance over a whole ray, that a mean visibility is a share of.
+// What interpolated values are shares of: a simple function of the ray that has the light's peak in it. Of the sun the
+// integral of the transmittance, so that a share is a mean visibility; of a local light that of 1 / d^2.
 fn epipolar_whole(ray: Ray) -> vec3f {
-    return max(transmittance_integral(frame.medium.sigma_t, 0.0, ray.length), vec3f(1e-30));
+    if !light_is_local() {
+        return max(transmittance_integral(frame.medium.sigma_t, 0.0, ray.length), vec3f(1e-30));
+    }
+    let to_light = light.position - ray.origin;
+    let projection = dot(to_light, ray.direction);
+    let height = max(length(to_light - projection * ray.direction), LIGHT_RADIUS);
+    return vec3f(max(atan((ray.length - projection) / height) + atan(projection / height), 1e-6) / height);
 }

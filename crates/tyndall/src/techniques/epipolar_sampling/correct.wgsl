@@ -34,13 +34,12 @@ fn correct(@builtin(global_invocation_id) id: vec3u) {
 }
 
 fn correct_ray(place: vec2f, ray: Ray) -> vec3f {
-    let slices = screen_border(frame.camera.size, epipolar.epipole, place) * f32(epipolar.slices);
-    let share = fract(slices);
+    let slices = epipolar_slices(place);
     var sum = vec4f(0.0);
     for (var i = 0u; i < 2u; i++) {
-        let slice = (u32(slices) + i) % epipolar.slices;
+        let slice = select(slices.first, slices.second, i == 1u);
         if any(correct_lines[slice].step != vec2f(0.0)) {
-            let weight = select(1.0 - share, share, i == 1u);
+            let weight = select(1.0 - slices.share, slices.share, i == 1u);
             sum += weight * vec4f(march(slice, correct_traces[slice], epipolar.levels, ray), 1.0);
         }
     }

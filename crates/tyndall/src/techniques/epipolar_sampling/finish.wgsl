@@ -19,9 +19,9 @@ fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if epipolar.show != FINISH_LIGHT {
         return vec4f(finish_view(position.xy, found), left);
     }
-    var radiance = found.rgb;
+    var radiance = found.rgb * epipolar_whole(ray);
     if !light_is_local() {
-        radiance *= epipolar_whole(ray) * medium_scattering(-dot(light.direction, ray.direction)) * light.color;
+        radiance *= medium_scattering(-dot(light.direction, ray.direction)) * light.color;
     }
     return vec4f(textureLoad(frame_lights_before, pixel, 0).rgb + radiance, left);
 }
@@ -37,8 +37,8 @@ fn finish_view(place: vec2f, found: vec4f) -> vec3f {
 // Pixels that hold a sample of the nearest slice: white where it was marched, blue where it was interpolated; of the
 // breaks only those that are marched because of one.
 fn finish_sample_view(place: vec2f) -> vec3f {
-    let border = screen_border(frame.camera.size, epipolar.epipole, place);
-    let slice = u32(round(border * f32(epipolar.slices))) % epipolar.slices;
+    let slices = epipolar_slices(place);
+    let slice = select(slices.first, slices.second, slices.share >= 0.5);
     let line = finish_lines[slice];
     let sample = round(screen_sample(line, place));
     let offset = line.entry + sample * line.step - place;

@@ -52,7 +52,7 @@ pub(crate) struct ParamsUniform {
     pub(crate) show: u32,
     pad: u32,
     pub(crate) coarse_size: [u32; 2],
-    end: [u32; 2],
+    pub(crate) arc: [f32; 2],
 }
 
 /// `TreeParams` of `tree.wgsl`.
@@ -98,7 +98,7 @@ impl ParamsUniform {
             },
             pad: 0,
             coarse_size: sizes.coarse,
-            end: [0; 2],
+            arc: epipole.arc.map(|x| x as f32),
         }
     }
 }

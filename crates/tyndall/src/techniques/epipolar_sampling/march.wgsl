@@ -16,15 +16,12 @@ struct MarchLine {
     s: vec2f, // distances [m]
 }
 
-// What a ray sees of the light: of the sun the mean visibility, weighted with the transmittance; of others radiance.
+// What a ray sees of the light, as a share of epipolar_whole: of the sun without, of others with the phase function.
 fn march(slice: u32, trace: Trace, levels: u32, ray: Ray) -> vec3f {
     let span = light_reach(ray);
     var sum = vec3f(0.0);
     if span.x < span.y {
         sum = march_span(slice, trace, levels, ray, span);
-    }
-    if light_is_local() {
-        return sum;
     }
     return sum / epipolar_whole(ray);
 }

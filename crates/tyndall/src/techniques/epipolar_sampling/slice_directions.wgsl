@@ -8,7 +8,8 @@ fn slice_directions(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= epipolar.slices {
         return;
     }
-    let exit = screen_exit(frame.camera.size, f32(id.x) / f32(epipolar.slices));
+    let border = screen_slice_border(epipolar.arc, epipolar.slices, id.x);
+    let exit = screen_exit(frame.camera.size, border);
     var trace = trace_slice(exit, screen_direction(epipolar.epipole, exit), epipolar.axis);
     if all(directions_lines[id.x].step == vec2f(0.0)) {
         trace.columns = vec2u(0u);

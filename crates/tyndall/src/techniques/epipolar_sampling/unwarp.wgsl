@@ -19,11 +19,9 @@ fn unwarp(@builtin(global_invocation_id) id: vec3u) {
     let pixel = coarse_pixel(id.xy);
     let place = vec2f(pixel) + 0.5;
     let depth = textureLoad(unwarp_linear_depth, pixel, 0).r;
-    let slices = screen_border(frame.camera.size, epipolar.epipole, place) * f32(epipolar.slices);
-    let first = u32(slices) % epipolar.slices;
-    let share = fract(slices);
-    let sum = unwarp_slice(first, place, depth) * (1.0 - share)
-        + unwarp_slice((first + 1u) % epipolar.slices, place, depth) * share;
+    let slices = epipolar_slices(place);
+    let sum = unwarp_slice(slices.first, place, depth) * (1.0 - slices.share)
+        + unwarp_slice(slices.second, place, depth) * slices.share;
     if sum.w >= EPIPOLAR_LEAST_WEIGHT {
         textureStore(unwarp_out, id.xy, vec4f(sum.rgb / sum.w, 1.0));
         return;
