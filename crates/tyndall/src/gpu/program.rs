@@ -54,6 +54,8 @@ pub(crate) struct Recipe {
     module: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     own: wgpu::BindGroupLayout,
+    /// Whether lights of different kinds need pipelines of their own.
+    reads_light: bool,
     /// What a full-screen pass writes.
     target: wgpu::TextureFormat,
     /// Overrides besides the light's.
@@ -136,6 +138,7 @@ impl<P: Pipeline> Program<P> {
                 immediate_size: 0,
             }),
             own,
+            reads_light: true,
             target: shared.output,
             constants: Vec::new(),
         };
@@ -154,6 +157,12 @@ impl<P: Pipeline> Program<P> {
     /// The same with another override.
     pub(crate) fn with(mut self, name: &'static str, value: f64) -> Self {
         self.recipe.constants.push((name, value));
+        self
+    }
+
+    /// Of a shader that does not read the light: one pipeline does for all.
+    pub(crate) fn for_all_lights(mut self) -> Self {
+        self.recipe.reads_light = false;
         self
     }
 
@@ -176,6 +185,11 @@ impl<P: Pipeline> Program<P> {
 
     /// The pipeline for this kind of light.
     pub(crate) fn get(&self, device: &wgpu::Device, variant: LightVariant) -> P {
+        let variant = if self.recipe.reads_light {
+            variant
+        } else {
+            LightVariant::default()
+        };
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let make = || {
             let mut constants = variant.constants().to_vec();

@@ -178,13 +178,16 @@ impl Technique {
     /// Checks what the device's limits say about a light, before anything is made.
     pub(crate) fn check_gpu(
         &self,
-        _limits: &wgpu::Limits,
-        _size: [u32; 2],
-        _index: usize,
-        _light: &Light,
-        _inputs: &LightInputs<'_>,
+        limits: &wgpu::Limits,
+        size: [u32; 2],
+        index: usize,
+        light: &Light,
+        inputs: &LightInputs<'_>,
     ) -> Result<(), PrepareError> {
-        Ok(())
+        match self {
+            Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
+            _ => Ok(()),
+        }
     }
 
     /// The passes of one light on the GPU.

@@ -36,16 +36,19 @@ fn correct(@builtin(global_invocation_id) id: vec3u) {
 fn correct_ray(place: vec2f, ray: Ray) -> vec3f {
     let slices = epipolar_slices(place);
     var sum = vec4f(0.0);
-    for (var i = 0u; i < 2u; i++) {
-        let slice = select(slices.first, slices.second, i == 1u);
-        if any(correct_lines[slice].step != vec2f(0.0)) {
-            let weight = select(1.0 - slices.share, slices.share, i == 1u);
-            sum += weight * vec4f(march(slice, correct_traces[slice], epipolar.levels, ray), 1.0);
+    for (var i = 0u; i < 3u && (i < 2u || sum.w < EPIPOLAR_LEAST_WEIGHT); i++) {
+        var slice = select(slices.first, slices.second, i == 1u);
+        var weight = select(1.0 - slices.share, slices.share, i == 1u);
+        var levels = epipolar.levels;
+        var trace = correct_traces[slice];
+        if i == 2u {
+            trace = trace_slice(place, screen_direction(epipolar.epipole, place), epipolar.axis);
+            levels = 0u;
+            weight = 1.0;
+        } else if all(correct_lines[slice].step == vec2f(0.0)) {
+            continue;
         }
+        sum += weight * vec4f(march(slice, trace, levels, ray), 1.0);
     }
-    if sum.w >= EPIPOLAR_LEAST_WEIGHT {
-        return sum.rgb / sum.w;
-    }
-    let own = trace_slice(place, screen_direction(epipolar.epipole, place), epipolar.axis);
-    return march(0u, own, 0u, ray);
+    return sum.rgb / sum.w;
 }

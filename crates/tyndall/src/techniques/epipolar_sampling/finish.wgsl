@@ -14,16 +14,17 @@ const FINISH_CORRECTED: u32 = 3u;
 fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let ray = camera_ray_to(position.xy, textureLoad(finish_linear_depth, pixel, 0).r);
-    let left = dot(transmittance(frame.medium.sigma_t, ray.length), vec3f(1.0 / 3.0));
+    let left = transmittance(frame.medium.sigma_t, ray.length);
+    let mean_left = dot(left, vec3f(1.0 / 3.0));
     let found = textureLoad(finish_in_scatter, pixel, 0);
     if epipolar.show != FINISH_LIGHT {
-        return vec4f(finish_view(position.xy, found), left);
+        return vec4f(finish_view(position.xy, found), mean_left);
     }
-    var radiance = found.rgb * epipolar_whole(ray);
+    var radiance = found.rgb * epipolar_whole_from(ray, left);
     if !light_is_local() {
         radiance *= medium_scattering(-dot(light.direction, ray.direction)) * light.color;
     }
-    return vec4f(textureLoad(frame_lights_before, pixel, 0).rgb + radiance, left);
+    return vec4f(textureLoad(frame_lights_before, pixel, 0).rgb + radiance, mean_left);
 }
 
 fn finish_view(place: vec2f, found: vec4f) -> vec3f {

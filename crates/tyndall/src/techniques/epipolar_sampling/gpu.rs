@@ -17,12 +17,8 @@ use crate::{
 
 /// Parameters that all stages read.
 pub(crate) const COMMON: &str = include_str!("common.wgsl");
-/// The tree's stage.
-pub(crate) const TREE: &str = include_str!("tree.wgsl");
 const COARSE: &str = include_str!("coarse.wgsl");
 const MARCH: &str = include_str!("march.wgsl");
-/// The correcting stages.
-pub(crate) const CORRECT: &str = include_str!("correct.wgsl");
 
 /// Invocations a group of the stages over samples, slices and lists.
 const GROUP: u32 = 64;
@@ -60,8 +56,7 @@ pub(crate) struct ParamsUniform {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct TreeUniform {
     pub(crate) base: u32,
-    pub(crate) levels: u32,
-    pad: [u32; 2],
+    pad: [u32; 3],
 }
 
 /// `CorrectParams` of `correct.wgsl`.
@@ -164,11 +159,11 @@ impl Programs {
         const MARCHING: &[&str] = &[AIRLIGHT, STRETCH, TRACE, COARSE, MARCH];
         const UNSHADOWED: &[&str] = &[AIRLIGHT, STRETCH];
         Self {
-            linear_depth: program!(ComputeProgram, "linear_depth", &[], &[DEPTH], false),
-            slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3], false),
-            coordinates: program!(ComputeProgram, "coordinates", &[], &[Texels, Read, Write], false),
+            linear_depth: program!(ComputeProgram, "linear_depth", &[], &[DEPTH], false).for_all_lights(),
+            slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3], false).for_all_lights(),
+            coordinates: program!(ComputeProgram, "coordinates", &[], &[Texels, Read, Write], false).for_all_lights(),
             refine: program!(ComputeProgram, "refine", UNSHADOWED, &[Read, Read, Write], true),
-            mark: program!(ComputeProgram, "mark", &[], &[Read, Read, Write, Write, Write], false),
+            mark: program!(ComputeProgram, "mark", &[], &[Read, Read, Write, Write, Write], false).for_all_lights(),
             slice_directions: program!(ComputeProgram, "slice_directions", &[TRACE], &[Read, Write], false),
             tree: program!(ComputeProgram, "tree", &[TRACE], &[Uniform, Read, Write], false),
             march_samples: program!(
@@ -178,14 +173,15 @@ impl Programs {
                 &[Read, Read, Read, Read, Read, Read, Write],
                 true
             ),
-            interpolate: program!(ComputeProgram, "interpolate", &[], &[Read, Write], false),
+            interpolate: program!(ComputeProgram, "interpolate", &[], &[Read, Write], false).for_all_lights(),
             unwarp: program!(
                 ComputeProgram,
                 "unwarp",
                 &[COARSE],
                 &[Texels, Read, Read, Read, VALUES, Write, Write, Write],
                 false
-            ),
+            )
+            .for_all_lights(),
             correct: program!(
                 ComputeProgram,
                 "correct",
@@ -199,7 +195,8 @@ impl Programs {
                 &[COARSE],
                 &[Texels, Texels, VALUES, Write, Write, Write],
                 false
-            ),
+            )
+            .for_all_lights(),
             finish: program!(ScreenProgram, "finish", &[], &[Texels, Texels, Read, Read], false),
         }
     }
@@ -383,17 +380,12 @@ fn tree(
     const NAMES: [&str; 4] = ["tree 0", "tree 4", "tree 8", "tree 12"];
     let starts = (0..sizes.levels).step_by(LEVELS_A_DISPATCH as usize);
     let dispatch = |(base, name): (u32, &'static str)| {
-        let uniform = TreeUniform {
-            base,
-            levels: LEVELS_A_DISPATCH.min(sizes.levels - base),
-            pad: [0; 2],
-        };
-        let parents = sizes.columns >> (base + uniform.levels);
-        let uniform = scope.uniform(name, &uniform);
+        let invocations = (sizes.columns >> base).div_ceil(1 << LEVELS_A_DISPATCH);
+        let uniform = scope.uniform(name, &TreeUniform { base, pad: [0; 3] });
         scope.dispatch(
             &programs.tree,
             &[buffer(&r.params), buffer(&uniform), buffer(&r.traces), buffer(&r.nodes)],
-            [parents.div_ceil(GROUP), sizes.slices * sizes.charts, 1],
+            [invocations.div_ceil(GROUP), sizes.slices * sizes.charts, 1],
         )
     };
     starts.zip(NAMES).map(dispatch).collect()

@@ -5,8 +5,9 @@
 
 // Bindings: `march_nodes`, the trees.
 
-// Steps over stretches outside the map where something tints the light.
-const MARCH_OUTSIDE_STEPS: f32 = 64.0;
+// Where something tints the light, a ray is cut into this many steps at least.
+const MARCH_TINTED_STEPS: f32 = 256.0;
+const MARCH_NO_RUN: vec2f = vec2f(-1.0);
 
 // A view ray's stretch over a chart, from lambda 0 to 1.
 struct MarchLine {
@@ -16,36 +17,64 @@ struct MarchLine {
     s: vec2f, // distances [m]
 }
 
+// A part of a ray: what lies over a chart, or what lies beyond the map and is lit.
+struct MarchPart {
+    line: MarchLine,
+    chart: u32,
+    columns: vec2u, // first and end; none beyond the map
+    run: vec2f, // lambda of what is known to be lit
+}
+
 // What a ray sees of the light, as a share of epipolar_whole: of the sun without, of others with the phase function.
 fn march(slice: u32, trace: Trace, levels: u32, ray: Ray) -> vec3f {
     let span = light_reach(ray);
+    if span.x >= span.y {
+        return vec3f(0.0);
+    }
     var sum = vec3f(0.0);
-    if span.x < span.y {
-        sum = march_span(slice, trace, levels, ray, span);
+    for (var i = 0u; i < march_parts(); i++) {
+        let part = march_part(i, trace, ray, span);
+        let row = slice * trace_charts() + part.chart;
+        sum += march_columns(row * epipolar.columns, trace, levels, ray, part);
     }
     return sum / epipolar_whole(ray);
 }
 
-fn march_span(slice: u32, trace: Trace, levels: u32, ray: Ray, span: vec2f) -> vec3f {
+// The map and what lies before and behind it; of a cube its charts, which cover everything.
+fn march_parts() -> u32 {
+    switch SHADOW_KIND {
+        case SHADOW_SINGLE: { return 3u; }
+        case SHADOW_CUBE: { return 2u; }
+        default: { return 1u; }
+    }
+}
+
+fn march_part(index: u32, trace: Trace, ray: Ray, span: vec2f) -> MarchPart {
     if SHADOW_KIND == SHADOW_NONE {
-        return march_stretch(ray, span, MARCH_OUTSIDE_STEPS);
+        return march_beyond(span);
     }
-    var sum = vec3f(0.0);
-    for (var chart = 0u; chart < trace_charts(); chart++) {
-        let over = trace_ray(trace, chart, epipolar.axis, ray, span);
-        if over.span.x >= over.span.y {
-            if SHADOW_KIND == SHADOW_SINGLE {
-                sum = march_stretch(ray, span, MARCH_OUTSIDE_STEPS);
-            }
-            continue;
+    let chart = select(0u, index, SHADOW_KIND == SHADOW_CUBE);
+    let over = trace_ray(trace, chart, epipolar.axis, ray, span);
+    let is_empty = over.span.x >= over.span.y;
+    if SHADOW_KIND == SHADOW_SINGLE && index != 1u {
+        if is_empty {
+            return march_beyond(select(span, span.xx, index == 2u));
         }
-        if SHADOW_KIND == SHADOW_SINGLE {
-            sum += march_stretch(ray, vec2f(span.x, over.span.x), MARCH_OUTSIDE_STEPS);
-            sum += march_stretch(ray, vec2f(over.span.y, span.y), MARCH_OUTSIDE_STEPS);
-        }
-        sum += march_chart(slice * trace_charts() + chart, trace, chart, levels, ray, march_line(over));
+        return march_beyond(select(vec2f(span.x, over.span.x), vec2f(over.span.y, span.y), index == 2u));
     }
-    return sum;
+    if is_empty {
+        return march_beyond(span.xx);
+    }
+    let line = march_line(over);
+    let side = trace_side(trace);
+    let first = min(u32(max(line.t.x, 0.0)), side - 1u);
+    let end = clamp(u32(ceil(max(line.t.y, 0.0))), first + 1u, side);
+    return MarchPart(line, chart, vec2u(first, end), MARCH_NO_RUN);
+}
+
+fn march_beyond(stretch: vec2f) -> MarchPart {
+    let run = select(MARCH_NO_RUN, vec2f(0.0, 1.0), stretch.x < stretch.y);
+    return MarchPart(MarchLine(vec2f(0.0), vec2f(0.0), vec2f(1.0), stretch), 0u, vec2u(0u), run);
 }
 
 fn march_line(over: TraceRay) -> MarchLine {
@@ -65,49 +94,54 @@ fn march_distance(line: MarchLine, lambda: f32) -> f32 {
     return mix(line.s.x, line.s.y, share);
 }
 
-fn march_chart(row: u32, trace: Trace, chart: u32, levels: u32, ray: Ray, line: MarchLine) -> vec3f {
-    let side = trace_side(trace);
+// Up at most one level a step (Chen et al. 2011, section 3.3); with no levels, column by column.
+fn march_columns(tree: u32, trace: Trace, levels: u32, ray: Ray, part: MarchPart) -> vec3f {
+    let line = part.line;
     let inverse = 1.0 / max(line.t.y - line.t.x, 1e-20);
     let rise = line.z.y - line.z.x;
-    let start = row * epipolar.columns;
-    var column = min(u32(max(line.t.x, 0.0)), side - 1u);
-    let end = clamp(u32(ceil(max(line.t.y, 0.0))), column + 1u, side);
+    var column = part.columns.x;
     var level = 0u;
-    var run = vec2f(-1.0);
+    var run = part.run;
     var sum = vec3f(0.0);
-    while column < end {
-        let next = column + (1u << level);
-        // A ray that comes in over the map's rim begins in the first column, whatever rounding says.
-        let edges = saturate((vec2f(f32(column), f32(next)) - line.t.x) * inverse);
-        let depths = line.z.x + edges * rise;
-        var bounds = vec2f(0.0);
-        if level == 0u {
-            bounds = vec2f(trace_depth(trace, chart, epipolar.axis, column));
-        } else {
-            bounds = march_nodes[start + (epipolar.columns >> level) + (column >> level)];
-        }
-        var lit = edges;
-        if min(depths.x, depths.y) < bounds.y {
-            if max(depths.x, depths.y) < bounds.x {
-                lit.y = lit.x;
-            } else if level > 0u {
-                level--;
-                continue;
+    loop {
+        let is_done = column >= part.columns.y;
+        var lit = vec2f(0.0);
+        if !is_done {
+            let next = column + (1u << level);
+            // A ray that comes in over the map's rim begins in the first column, whatever rounding says.
+            let edges = saturate((vec2f(f32(column), f32(next)) - line.t.x) * inverse);
+            let depths = line.z.x + edges * rise;
+            var bounds = vec2f(0.0);
+            if level == 0u {
+                bounds = vec2f(trace_depth(trace, part.chart, epipolar.axis, column));
             } else {
-                lit = march_lit_part(edges, depths, bounds.x);
+                bounds = march_nodes[tree + (epipolar.columns >> level) + (column >> level)];
             }
-        }
-        if lit.x < lit.y {
-            if lit.x > run.y {
-                sum += march_run(ray, line, run);
-                run.x = lit.x;
+            lit = edges;
+            if min(depths.x, depths.y) < bounds.y {
+                if max(depths.x, depths.y) < bounds.x {
+                    lit.y = lit.x;
+                } else if level > 0u {
+                    level--;
+                    continue;
+                } else {
+                    lit = march_lit_part(edges, depths, bounds.x);
+                }
             }
-            run.y = lit.y;
+            column = next;
+            level = min(level + u32((next & ((2u << level) - 1u)) == 0u), levels);
         }
-        column = next;
-        level = min(level + u32((next & ((2u << level) - 1u)) == 0u), levels);
+        let is_lit = lit.x < lit.y;
+        if is_done || (is_lit && lit.x > run.y) {
+            sum += march_run(ray, line, run);
+            if is_done {
+                break;
+            }
+            run.x = lit.x;
+        }
+        run.y = select(run.y, lit.y, is_lit);
     }
-    return sum + march_run(ray, line, run);
+    return sum;
 }
 
 // The part of a column on the lit side of where the ray crosses its depth.
@@ -122,16 +156,11 @@ fn march_run(ray: Ray, line: MarchLine, run: vec2f) -> vec3f {
     }
     let a = march_distance(line, run.x);
     let b = march_distance(line, run.y);
-    return march_stretch(ray, vec2f(min(a, b), max(a, b)), ceil((run.y - run.x) * (line.t.y - line.t.x)));
-}
-
-// A lit stretch [m], of so many columns: in closed form, or column by column where something tints the light.
-fn march_stretch(ray: Ray, stretch: vec2f, columns: f32) -> vec3f {
-    if stretch.x >= stretch.y {
-        return vec3f(0.0);
-    }
+    let stretch = vec2f(min(a, b), max(a, b));
     if LIGHT_TEXTURE != LIGHT_TEXTURE_NONE || SHADOW_GLASS {
-        return march_tinted(ray, stretch, max(columns, 1.0));
+        let columns = (run.y - run.x) * (line.t.y - line.t.x);
+        let share = (stretch.y - stretch.x) / max(ray.length, 1e-20);
+        return march_tinted(ray, stretch, ceil(max(columns, max(share * MARCH_TINTED_STEPS, 1.0))));
     }
     if light_is_local() {
         return stretch_plain(ray, stretch.x, stretch.y);

@@ -267,6 +267,37 @@ impl Sizes {
     }
 }
 
+#[cfg(feature = "gpu")]
+impl Params {
+    /// Refuses what does not fit into the device's storage bindings.
+    pub(crate) fn check_gpu(
+        &self,
+        limits: &wgpu::Limits,
+        size: [u32; 2],
+        index: usize,
+        light: &Light,
+        inputs: &LightInputs<'_>,
+    ) -> Result<(), PrepareError> {
+        let bytes = Sizes::new(self, size, light, inputs).bytes();
+        let allowed = limits.max_storage_buffer_binding_size;
+        for (what, needed) in [
+            ("min/max trees", bytes.nodes),
+            ("samples", bytes.values),
+            ("lists of pixels", bytes.list),
+        ] {
+            if needed > allowed {
+                return Err(PrepareError::Unsupported {
+                    technique: INFO.name,
+                    what: format!(
+                        "`lights[{index}]` within `max_storage_buffer_binding_size` {allowed}, for its {what} take {needed} bytes"
+                    ),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Levels of a tree; coarser nodes are hardly ever lit or dark as a whole (Yusov 2012, section 6.3).
 #[cfg(feature = "gpu")]
 const MOST_LEVELS: u32 = 12;

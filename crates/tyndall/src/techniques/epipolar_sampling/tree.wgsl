@@ -1,56 +1,62 @@
 // Stage 7: the 1-D min/max tree of each slice (Chen et al. 2011), a heap without its leaves: node j of level k is at
-// (columns >> k) + j. A dispatch builds up to four levels, of 16 children an invocation. The leaves are the shadow map's
-// own texels along the trace.
+// (columns >> k) + j. A dispatch builds four levels, of 16 children an invocation. The leaves are the shadow map's own
+// texels along the trace.
 
 struct TreeParams {
     base: u32, // the level of the children
-    levels: u32, // 1 to 4
 }
 
-// Bounds of columns that no view ray of the slice crosses.
+// Bounds of columns that no view ray of the slice crosses: min, max.
 const TREE_NOTHING: vec2f = vec2f(1e30, -1e30);
 
 @group(2) @binding(1) var<uniform> tree_params: TreeParams;
 @group(2) @binding(2) var<storage, read> tree_traces: array<Trace>;
-// min, max
 @group(2) @binding(3) var<storage, read_write> tree_nodes: array<vec2f>;
 
 @compute @workgroup_size(64)
 fn tree(@builtin(global_invocation_id) id: vec3u) {
-    let parents = epipolar.columns >> (tree_params.base + tree_params.levels);
-    if id.x >= parents {
+    if 16u * id.x >= epipolar.columns >> tree_params.base {
         return;
     }
-    let chart = id.y % trace_charts();
     let trace = tree_traces[id.y / trace_charts()];
-    let start = id.y * epipolar.columns;
-    var nodes: array<vec2f, 16>;
-    var count = 1u << tree_params.levels;
-    if tree_params.base == 0u {
-        for (var i = 0u; i < count; i++) {
-            nodes[i] = tree_leaf(trace, chart, id.x * count + i);
+    var node4 = TREE_NOTHING;
+    for (var i = 2u * id.x; i < 2u * id.x + 2u; i++) {
+        var node3 = TREE_NOTHING;
+        for (var j = 2u * i; j < 2u * i + 2u; j++) {
+            var node2 = TREE_NOTHING;
+            for (var k = 2u * j; k < 2u * j + 2u; k++) {
+                let node1 = tree_union(tree_child(id.y, trace, 2u * k), tree_child(id.y, trace, 2u * k + 1u));
+                tree_keep(id.y, 1u, k, node1);
+                node2 = tree_union(node2, node1);
+            }
+            tree_keep(id.y, 2u, j, node2);
+            node3 = tree_union(node3, node2);
         }
-    } else {
-        let first = start + (epipolar.columns >> tree_params.base) + id.x * count;
-        for (var i = 0u; i < count; i++) {
-            nodes[i] = tree_nodes[first + i];
-        }
+        tree_keep(id.y, 3u, i, node3);
+        node4 = tree_union(node4, node3);
     }
-    for (var level = 1u; level <= tree_params.levels; level++) {
-        count /= 2u;
-        let first = start + (epipolar.columns >> (tree_params.base + level)) + id.x * count;
-        for (var i = 0u; i < count; i++) {
-            let a = nodes[2u * i];
-            let b = nodes[2u * i + 1u];
-            nodes[i] = vec2f(min(a.x, b.x), max(a.y, b.y));
-            tree_nodes[first + i] = nodes[i];
-        }
-    }
+    tree_keep(id.y, 4u, id.x, node4);
 }
 
-fn tree_leaf(trace: Trace, chart: u32, column: u32) -> vec2f {
-    if column < trace.columns.x || column >= trace.columns.y {
+fn tree_union(a: vec2f, b: vec2f) -> vec2f {
+    return vec2f(min(a.x, b.x), max(a.y, b.y));
+}
+
+fn tree_child(row: u32, trace: Trace, index: u32) -> vec2f {
+    if tree_params.base > 0u {
+        let count = epipolar.columns >> tree_params.base;
+        return select(TREE_NOTHING, tree_nodes[row * epipolar.columns + count + index], index < count);
+    }
+    if index < trace.columns.x || index >= trace.columns.y {
         return TREE_NOTHING;
     }
-    return vec2f(trace_depth(trace, chart, epipolar.axis, column));
+    return vec2f(trace_depth(trace, row % trace_charts(), epipolar.axis, index));
+}
+
+// A node of a level above the children's, where the tree goes so high.
+fn tree_keep(row: u32, level: u32, index: u32, node: vec2f) {
+    let count = epipolar.columns >> (tree_params.base + level);
+    if index < count {
+        tree_nodes[row * epipolar.columns + count + index] = node;
+    }
 }
