@@ -40,7 +40,10 @@ impl Epipole {
             camera.forward
         };
         let place = camera.homogeneous_pixel(to_light, w);
-        let scale = (place.truncate() / size).abs().max_element().max(place.z.abs());
+        let scale = (place.truncate() / size)
+            .abs()
+            .max_element()
+            .max(place.z.abs());
         let at_eye = camera.is_perspective() && distance <= LEAST_DISTANCE;
         let place = if at_eye || scale <= 1e-6 * distance {
             (0.5 * size).extend(1.0)
@@ -84,14 +87,24 @@ fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
         let way = away(exit(size, border));
         (middle.perp_dot(way).atan2(middle.dot(way)), border)
     });
-    let first = corners.iter().copied().fold(corners[0], |a, b| if b.0 < a.0 { b } else { a });
-    let last = corners.iter().copied().fold(corners[0], |a, b| if b.0 > a.0 { b } else { a });
+    let first = corners
+        .iter()
+        .copied()
+        .fold(corners[0], |a, b| if b.0 < a.0 { b } else { a });
+    let last = corners
+        .iter()
+        .copied()
+        .fold(corners[0], |a, b| if b.0 > a.0 { b } else { a });
     let between = |from: f64, to: f64| [from, (to - from).rem_euclid(1.0)];
     let [near, far] = [between(first.1, last.1), between(last.1, first.1)];
     let distance = |[start, length]: [f64; 2]| {
         middle.dot(away(exit(size, (start + 0.5 * length).rem_euclid(1.0))))
     };
-    if distance(near) > distance(far) { near } else { far }
+    if distance(near) > distance(far) {
+        near
+    } else {
+        far
+    }
 }
 
 #[cfg(test)]
@@ -136,7 +149,10 @@ mod tests {
 
     fn normalized(place: DVec3) -> DVec3 {
         let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
-        let scale = (place.truncate() / size).abs().max_element().max(place.z.abs());
+        let scale = (place.truncate() / size)
+            .abs()
+            .max_element()
+            .max(place.z.abs());
         place / scale * if place.z < 0.0 { -1.0 } else { 1.0 }
     }
 
@@ -160,7 +176,10 @@ mod tests {
                     let found = Epipole::new(&camera, SIZE, &emitter);
                     let place = found.place.truncate() / found.place.z;
                     // f32 directions: measured 4.3e-5 pixels.
-                    assert!((place - DVec2::new(px, py)).length() < 1e-4, "{place} {x:?}");
+                    assert!(
+                        (place - DVec2::new(px, py)).length() < 1e-4,
+                        "{place} {x:?}"
+                    );
                     assert!((found.axis - sign * direction).length() < 1e-6);
                 }
             }
@@ -177,7 +196,15 @@ mod tests {
         let camera = camera();
         let found = Epipole::new(&camera, SIZE, &lamp);
         assert_eq!((found.place, found.axis), (middle, camera.forward));
-        let mut flat = Camera::perspective([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], 1.0, 1.6, 0.1, 9.0);
+        let mut flat = Camera::perspective(
+            [0.0; 3],
+            [0.0, 0.0, -1.0],
+            [0.0, 1.0, 0.0],
+            1.0,
+            1.6,
+            0.1,
+            9.0,
+        );
         flat.projection = crate::frame::Projection::Orthographic {
             half_extent: [4.0, 2.5],
             center: [0.5, 0.0],
@@ -232,28 +259,48 @@ mod tests {
             let lines = evaluate("test_line(x).entry, test_line(x).step");
             let sample = evaluate("test_sample(x)");
             let slices = evaluate("test_slices(x)");
-            let borders = evaluate("test_exit(x, test_slices(x).y), test_exit(x, test_slices(x).z), 0.0, 0.0");
+            let borders = evaluate(
+                "test_exit(x, test_slices(x).y), test_exit(x, test_slices(x).z), 0.0, 0.0",
+            );
             for i in 0..inputs.len() {
                 let pixel = DVec2::new(pixels[i][0].into(), pixels[i][1].into());
                 let [x, y, dx, dy] = lines[i].map(f64::from);
                 let (entry, step) = (DVec2::new(x, y), DVec2::new(dx, dy));
                 let place = entry + f64::from(sample[i][0]) * step;
                 // Measured 2.2e-3, of an epipole 9e5 pixels away; 1e-3 on the picture.
-                assert!((place - pixel).length() < 5e-3, "{epipole} {pixel}: {place}");
-                assert!((-0.1..f64::from(samples)).contains(&f64::from(sample[i][0])), "{epipole} {pixel}");
+                assert!(
+                    (place - pixel).length() < 5e-3,
+                    "{epipole} {pixel}: {place}"
+                );
+                assert!(
+                    (-0.1..f64::from(samples)).contains(&f64::from(sample[i][0])),
+                    "{epipole} {pixel}"
+                );
                 assert!(entry.cmpge(DVec2::splat(-1.001)).all() && entry.cmple(size + 1.001).all());
-                assert!(step.length() > 0.999, "no line may be missing: {epipole} {pixel}");
+                assert!(
+                    step.length() > 0.999,
+                    "no line may be missing: {epipole} {pixel}"
+                );
                 // Its two slices are on either side, but at the ends of an open arc.
                 let [border, first, second, share] = slices[i].map(f64::from);
                 let from = |a: f64| (a - f64::from(borders[i][0]) + 0.5).rem_euclid(1.0) - 0.5;
                 let gap = from(f64::from(borders[i][1]));
                 let along = from(border);
                 if first == second || share == 0.0 {
-                    assert!(along.abs() < 0.51 * length / 100.0 + 1e-5, "{epipole} {pixel} {along}");
+                    assert!(
+                        along.abs() < 0.51 * length / 100.0 + 1e-5,
+                        "{epipole} {pixel} {along}"
+                    );
                 } else {
-                    assert!((gap - length / 100.0).abs() < 1e-5, "{epipole} {gap} {length}");
+                    assert!(
+                        (gap - length / 100.0).abs() < 1e-5,
+                        "{epipole} {gap} {length}"
+                    );
                     // Measured 3e-4 of the gap at f32.
-                    assert!((along - share * gap).abs() < 1e-3 * gap + 1e-6, "{epipole} {pixel}");
+                    assert!(
+                        (along - share * gap).abs() < 1e-3 * gap + 1e-6,
+                        "{epipole} {pixel}"
+                    );
                 }
                 assert!((0.0..=1.0).contains(&share) && first < 100.0 && second < 100.0);
             }

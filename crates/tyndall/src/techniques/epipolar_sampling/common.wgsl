@@ -37,20 +37,3 @@ fn epipolar_similarity(depth: f32, source: f32) -> f32 {
 
 // Sources of less weight than this together cannot stand for a point.
 const EPIPOLAR_LEAST_WEIGHT: f32 = 0.01;
-
-// What interpolated values are shares of: a simple function of the ray that has the light's peak in it. Of the sun the
-// integral of the transmittance, so that a share is a mean visibility; of a local light that of 1 / d^2.
-fn epipolar_whole(ray: Ray) -> vec3f {
-    return epipolar_whole_from(ray, transmittance(frame.medium.sigma_t, ray.length));
-}
-
-// The same, where the transmittance of the ray is known.
-fn epipolar_whole_from(ray: Ray, left: vec3f) -> vec3f {
-    if !light_is_local() {
-        return max(transmittance_integral_from_eye(frame.medium.sigma_t, ray.length, left), vec3f(1e-30));
-    }
-    let to_light = light.position - ray.origin;
-    let projection = dot(to_light, ray.direction);
-    let height = max(length(to_light - projection * ray.direction), LIGHT_RADIUS);
-    return vec3f(max(atan((ray.length - projection) / height) + atan(projection / height), 1e-6) / height);
-}

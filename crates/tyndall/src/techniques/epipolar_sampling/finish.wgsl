@@ -1,4 +1,4 @@
-// The phase function, at full resolution; or one of the debug views in its place.
+// The unshadowed light and the phase function, at full resolution; or one of the debug views in its place.
 
 const FINISH_LIGHT: u32 = 0u;
 const FINISH_SAMPLES: u32 = 1u;
@@ -9,6 +9,7 @@ const FINISH_CORRECTED: u32 = 3u;
 @group(2) @binding(2) var finish_linear_depth: texture_2d<f32>;
 @group(2) @binding(3) var<storage, read> finish_lines: array<ScreenLine>;
 @group(2) @binding(4) var<storage, read> finish_sources: array<u32>;
+@group(2) @binding(5) var airlight_table: texture_2d_array<f32>;
 
 @fragment
 fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -20,7 +21,7 @@ fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if epipolar.show != FINISH_LIGHT {
         return vec4f(finish_view(position.xy, found), mean_left);
     }
-    var radiance = found.rgb * epipolar_whole_from(ray, left);
+    var radiance = found.rgb * unshadowed_from(ray, left);
     if !light_is_local() {
         radiance *= medium_scattering(-dot(light.direction, ray.direction)) * light.color;
     }

@@ -156,16 +156,57 @@ impl Programs {
                 $kind::new(device, shared, $name, &wgsl, $name, &own)
             }};
         }
-        const MARCHING: &[&str] = &[AIRLIGHT, STRETCH, TRACE, COARSE, MARCH];
-        const UNSHADOWED: &[&str] = &[AIRLIGHT, STRETCH];
+        const UNSHADOWED: &[&str] = &[AIRLIGHT, STRETCH, include_str!("unshadowed.wgsl")];
+        const MARCHING: &[&str] = &[
+            AIRLIGHT,
+            STRETCH,
+            include_str!("unshadowed.wgsl"),
+            TRACE,
+            COARSE,
+            MARCH,
+        ];
         Self {
-            linear_depth: program!(ComputeProgram, "linear_depth", &[], &[DEPTH], false).for_all_lights(),
-            slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3], false).for_all_lights(),
-            coordinates: program!(ComputeProgram, "coordinates", &[], &[Texels, Read, Write], false).for_all_lights(),
-            refine: program!(ComputeProgram, "refine", UNSHADOWED, &[Read, Read, Write], true),
-            mark: program!(ComputeProgram, "mark", &[], &[Read, Read, Write, Write, Write], false).for_all_lights(),
-            slice_directions: program!(ComputeProgram, "slice_directions", &[TRACE], &[Read, Write], false),
-            tree: program!(ComputeProgram, "tree", &[TRACE], &[Uniform, Read, Write], false),
+            linear_depth: program!(ComputeProgram, "linear_depth", &[], &[DEPTH], false)
+                .for_all_lights(),
+            slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3], false)
+                .for_all_lights(),
+            coordinates: program!(
+                ComputeProgram,
+                "coordinates",
+                &[],
+                &[Texels, Read, Write],
+                false
+            )
+            .for_all_lights(),
+            refine: program!(
+                ComputeProgram,
+                "refine",
+                UNSHADOWED,
+                &[Read, Read, Write],
+                true
+            ),
+            mark: program!(
+                ComputeProgram,
+                "mark",
+                &[],
+                &[Read, Read, Write, Write, Write],
+                false
+            )
+            .for_all_lights(),
+            slice_directions: program!(
+                ComputeProgram,
+                "slice_directions",
+                &[TRACE],
+                &[Read, Write],
+                false
+            ),
+            tree: program!(
+                ComputeProgram,
+                "tree",
+                &[TRACE],
+                &[Uniform, Read, Write],
+                false
+            ),
             march_samples: program!(
                 ComputeProgram,
                 "march_samples",
@@ -173,7 +214,8 @@ impl Programs {
                 &[Read, Read, Read, Read, Read, Read, Write],
                 true
             ),
-            interpolate: program!(ComputeProgram, "interpolate", &[], &[Read, Write], false).for_all_lights(),
+            interpolate: program!(ComputeProgram, "interpolate", &[], &[Read, Write], false)
+                .for_all_lights(),
             unwarp: program!(
                 ComputeProgram,
                 "unwarp",
@@ -197,7 +239,13 @@ impl Programs {
                 false
             )
             .for_all_lights(),
-            finish: program!(ScreenProgram, "finish", &[], &[Texels, Texels, Read, Read], false),
+            finish: program!(
+                ScreenProgram,
+                "finish",
+                UNSHADOWED,
+                &[Texels, Texels, Read, Read],
+                true
+            ),
         }
     }
 }
@@ -228,7 +276,11 @@ impl Resources {
         let bytes = sizes.bytes();
         Self {
             params: scope.uniform("epipolar params", &uniform),
-            linear_depth: scope.storage_texture("linear depth", scope.size, TextureFormat::R32Float),
+            linear_depth: scope.storage_texture(
+                "linear depth",
+                scope.size,
+                TextureFormat::R32Float,
+            ),
             lines: scope.storage("slice ends", bytes.lines),
             traces: scope.storage("slice directions", bytes.traces),
             depth: scope.storage("sample depths", bytes.depth),
@@ -238,7 +290,11 @@ impl Resources {
             marched: scope.storage("marched samples", bytes.sources),
             nodes: scope.storage("min/max trees", bytes.nodes),
             values: scope.storage("sample values", bytes.values),
-            coarse: scope.storage_texture("rectangular values", sizes.coarse, TextureFormat::Rgba32Float),
+            coarse: scope.storage_texture(
+                "rectangular values",
+                sizes.coarse,
+                TextureFormat::Rgba32Float,
+            ),
             coarse_list: scope.storage("corrected pixels", bytes.coarse_list),
             airlight: scope.airlight(),
         }
@@ -289,13 +345,23 @@ fn locate(programs: &Programs, sizes: &Sizes, scope: &LightScope<'_>, r: &Resour
         scope.compute(
             &programs.slice_ends,
             "slice end points",
-            &[buffer(&r.params), buffer(&r.lines), buffer(&r.counts), buffer(&r.dispatches)],
+            &[
+                buffer(&r.params),
+                buffer(&r.lines),
+                buffer(&r.counts),
+                buffer(&r.dispatches),
+            ],
             [sizes.slices.div_ceil(GROUP), 1, 1],
         ),
         scope.compute(
             &programs.coordinates,
             "coordinate texture",
-            &[buffer(&r.params), view(&r.linear_depth), buffer(&r.lines), buffer(&r.depth)],
+            &[
+                buffer(&r.params),
+                view(&r.linear_depth),
+                buffer(&r.lines),
+                buffer(&r.depth),
+            ],
             by_sample,
         ),
         scope.compute(
@@ -384,7 +450,12 @@ fn tree(
         let uniform = scope.uniform(name, &TreeUniform { base, pad: [0; 3] });
         scope.dispatch(
             &programs.tree,
-            &[buffer(&r.params), buffer(&uniform), buffer(&r.traces), buffer(&r.nodes)],
+            &[
+                buffer(&r.params),
+                buffer(&uniform),
+                buffer(&r.traces),
+                buffer(&r.nodes),
+            ],
             [invocations.div_ceil(GROUP), sizes.slices * sizes.charts, 1],
         )
     };
@@ -415,7 +486,15 @@ fn rectangular(
         ],
         tiles(sizes.coarse),
     )];
-    passes.push(correct(programs, scope, r, "correction", (1, params.downscale), &r.coarse_list, &r.coarse));
+    passes.push(correct(
+        programs,
+        scope,
+        r,
+        "correction",
+        (1, params.downscale),
+        &r.coarse_list,
+        &r.coarse,
+    ));
     let mut values = r.coarse.clone();
     if params.downscale > 1 {
         let list = scope.storage("upscaled, corrected pixels", sizes.bytes().list);
@@ -434,7 +513,15 @@ fn rectangular(
             ],
             tiles(scope.size),
         ));
-        passes.push(correct(programs, scope, r, "second correction", (2, 1), &list, &values));
+        passes.push(correct(
+            programs,
+            scope,
+            r,
+            "second correction",
+            (2, 1),
+            &list,
+            &values,
+        ));
     }
     passes.push(scope.full_screen(
         &programs.finish,
@@ -445,6 +532,7 @@ fn rectangular(
             view(&r.linear_depth),
             buffer(&r.lines),
             buffer(&r.sources),
+            view(&r.airlight),
         ],
     ));
     passes

@@ -25,11 +25,11 @@ struct MarchPart {
     run: vec2f, // lambda of what is known to be lit
 }
 
-// What a ray sees of the light, as a share of epipolar_whole: of the sun without, of others with the phase function.
+// The mean visibility of the light along a ray: what is seen of its unshadowed light, tints included.
 fn march(slice: u32, trace: Trace, levels: u32, ray: Ray) -> vec3f {
     let span = light_reach(ray);
     if span.x >= span.y {
-        return vec3f(0.0);
+        return vec3f(1.0);
     }
     var sum = vec3f(0.0);
     for (var i = 0u; i < march_parts(); i++) {
@@ -37,7 +37,7 @@ fn march(slice: u32, trace: Trace, levels: u32, ray: Ray) -> vec3f {
         let row = slice * trace_charts() + part.chart;
         sum += march_columns(row * epipolar.columns, trace, levels, ray, part);
     }
-    return sum / epipolar_whole(ray);
+    return unshadowed_share(sum, unshadowed(ray));
 }
 
 // The map and what lies before and behind it; of a cube its charts, which cover everything.

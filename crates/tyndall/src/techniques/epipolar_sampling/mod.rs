@@ -243,7 +243,11 @@ impl Sizes {
                 _ => 1,
             },
             columns,
-            levels: if has_tree { columns.ilog2().min(MOST_LEVELS) } else { 0 },
+            levels: if has_tree {
+                columns.ilog2().min(MOST_LEVELS)
+            } else {
+                0
+            },
             coarse: size.map(|n| n.div_ceil(params.downscale)),
             size,
         }

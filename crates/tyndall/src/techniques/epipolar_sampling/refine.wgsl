@@ -40,19 +40,12 @@ fn refine_differ(slice: u32, sample: u32, depth: f32, next: f32) -> bool {
         return abs(depth - next) > epipolar.threshold * min(depth, next);
     }
     let line = refine_lines[slice];
-    let ends = vec2f(f32(sample), f32(sample + 1u));
-    let a = refine_unshadowed(camera_ray_to(line.entry + ends.x * line.step, depth));
-    let b = refine_unshadowed(camera_ray_to(line.entry + ends.y * line.step, next));
-    return any(abs(a - b) > epipolar.threshold * max(a, b));
-}
-
-// What a ray would scatter towards the eye if nothing blocked the light, but for common factors.
-fn refine_unshadowed(ray: Ray) -> vec3f {
-    if !light_is_local() {
-        return epipolar_whole(ray);
+    var seen: array<vec3f, 2>;
+    for (var i = 0u; i < 2u; i++) {
+        let place = line.entry + f32(sample + i) * line.step;
+        seen[i] = unshadowed(camera_ray_to(place, select(depth, next, i == 1u)));
     }
-    let span = light_reach(ray);
-    return stretch_plain(ray, span.x, span.y);
+    return any(abs(seen[0] - seen[1]) > epipolar.threshold * max(seen[0], seen[1]));
 }
 
 // The ends of the section that a sample lies in, cut by the breaks on either side.
