@@ -120,15 +120,13 @@ fn places(x: f32, y: f32) -> [[f32; 2]; 10] {
     ]
 }
 
-const POSES: usize = 50;
-
-/// Views of the lights' stages: what the stage is with a random eye, and the epipole where it hurts.
-fn poses(lights: &[&str]) -> Vec<Stage> {
+/// Views of the lights' stages: a random eye, and the epipole where it hurts.
+fn poses(count: usize, lights: &[&str]) -> Vec<Stage> {
     let all = stages();
     let mut poses = Vec::new();
     let random = in_box(
         11,
-        POSES / 10,
+        count / 10,
         [
             -6.0..=6.0,
             -6.0..=6.0,
@@ -167,69 +165,67 @@ fn poses(lights: &[&str]) -> Vec<Stage> {
     poses
 }
 
+/// As fine as pictures of this size need.
+fn small() -> Technique {
+    epipolar(&[whole("slices", 192), whole("samples", 64)])
+}
+
 /// Wherever the epipole is: no NaN, and the light of marching.
 #[test]
 fn shadows_are_there_wherever_the_epipole_is() {
-    let Some(gpu) = device_or_skip("epipolar sampling from 500 poses") else {
+    let Some(gpu) = device_or_skip("epipolar sampling of shadows from many poses") else {
         return;
     };
     let effect = effect(gpu);
     let march = technique("ray-march", &[steps(256)]);
-    let mut worst = 0.0_f64;
-    for pose in poses(&["sun;", "lamp;", "spot;"]) {
-        let found = on::on_gpu(gpu, effect, &pose, epipolar(&[]));
+    let mut worst = (0.0, String::new());
+    for pose in poses(100, &["sun;", "lamp;", "spot;"]) {
+        let found = on::on_gpu(gpu, effect, &pose, small());
         let marched = on::on_gpu(gpu, effect, &pose, march.clone());
-        let error = compare(&found, &marched).expect("same size");
-        if error.rel_mae > worst {
-            worst = error.rel_mae;
-            println!("{:.4} {}", worst, pose.name);
+        let error = compare(&found, &marched).expect("same size").rel_mae;
+        if error > worst.0 {
+            worst = (error, pose.name);
         }
     }
+    println!("shadows: {worst:?}");
+    assert!(worst.0 < 0.25, "{worst:?}");
 }
 
 /// Light that nothing blocks has no edges: here a pixel without its light is a seam, and none may be.
 #[test]
 fn no_seams_are_there_wherever_the_epipole_is() {
-    let Some(gpu) = device_or_skip("epipolar sampling without blockers") else {
+    let Some(gpu) = device_or_skip("epipolar sampling without blockers from 500 poses") else {
         return;
     };
     let effect = effect(gpu);
-    let march = technique(
-        "ray-march",
-        &[steps(256), ("spacing", Value::Word("equiangular".into()))],
-    );
-    let mut worst = 0.0_f64;
-    for mut pose in poses(&["sun;", "lamp;"]).into_iter().filter(|p| {
-        p.name.contains("[-6, 6, 6]; epipole [1.0, 1.0]")
-            || p.name.contains("[6, 6, -6]; epipole [-0.95, -1.00")
-            || p.name.contains("[-6, -6, -6]; epipole [-1.0, -0")
-    }) {
+    let equiangular = ("spacing", Value::Word("equiangular".into()));
+    let march = technique("ray-march", &[steps(128), equiangular]);
+    let mut worst = (0.0, String::new());
+    for mut pose in poses(500, &["sun;", "lamp;"]) {
         if let Some(map) = &mut pose.lights[0].shadow_map {
             map.depth.fill(0.0);
         }
-        let found = on::on_gpu(gpu, effect, &pose, epipolar(&[]));
+        let found = on::on_gpu(gpu, effect, &pose, small());
         let marched = on::on_gpu(gpu, effect, &pose, march.clone());
-        let error = found
-            .pixels()
-            .iter()
-            .zip(marched.pixels())
+        let pairs = found.pixels().iter().zip(marched.pixels());
+        let error = pairs
             .map(|(a, b)| (a[0] - b[0]).abs() / b[0])
             .fold(0.0, f64::max);
-        if error > worst {
-            worst = error;
-            println!("{:.4} {}", worst, pose.name);
-        }
-        if error > 0.05 {
-            for (i, (a, b)) in found.pixels().iter().zip(marched.pixels()).enumerate() {
-                if (a[0] - b[0]).abs() > 0.05 * b[0] {
-                    println!("   {},{}: {:.4} {:.4}", i % 48, i / 48, a[0], b[0]);
-                }
-            }
+        assert!(
+            found.pixels().iter().flatten().all(|x| x.is_finite()),
+            "{}",
+            pose.name
+        );
+        if error > worst.0 {
+            worst = (error, pose.name);
         }
     }
+    println!("seams: {worst:?}");
+    // Measured on lavapipe: 0.0035 of the pixel.
+    assert!(worst.0 < 0.007, "{worst:?}");
 }
 
-/// A tenth of a pixel of turning changes a pixel no more than it changes it by marching, but for the technique's error.
+/// A tenth of a pixel of turning changes the picture no more than it changes by marching, but for the technique's error.
 #[test]
 fn pictures_are_stable_as_the_camera_turns() {
     let Some(gpu) = device_or_skip("epipolar sampling of a camera that turns") else {
@@ -237,26 +233,28 @@ fn pictures_are_stable_as_the_camera_turns() {
     };
     let effect = effect(gpu);
     let march = technique("ray-march", &[steps(1024)]);
-    for mut stage in poses(&["sun;", "lamp;", "spot;"]).into_iter().step_by(37) {
-        let before = [epipolar(&[]), march.clone()].map(|t| on::on_gpu(gpu, effect, &stage, t));
+    for mut stage in poses(100, &["sun;", "lamp;", "spot;"])
+        .into_iter()
+        .step_by(13)
+    {
+        let render = |stage: &Stage| {
+            [epipolar(&[]), march.clone()].map(|t| on::on_gpu(gpu, effect, stage, t))
+        };
+        let before = render(&stage);
         let tenth = 0.1 * 2.0 * HALF_EXTENT[0] / SIZE[0] as f32;
         let camera = &mut stage.frame.camera;
-        let side = Vec3::from(camera.forward)
-            .cross(Vec3::from(camera.up))
-            .normalize();
-        camera.forward = (Vec3::from(camera.forward) + tenth * side).to_array();
-        let after = [epipolar(&[]), march.clone()].map(|t| on::on_gpu(gpu, effect, &stage, t));
-        let mean = before[1].pixels().iter().flatten().sum::<f64>()
-            / (3 * before[1].pixels().len()) as f64;
-        let change = |k: usize| {
-            before[k]
-                .pixels()
-                .iter()
-                .zip(after[k].pixels())
-                .map(|(a, b)| (a[0] - b[0]).abs())
-                .fold(0.0, f64::max)
-                / mean
-        };
-        println!("{:.3} {:.3} {}", change(0), change(1), stage.name);
+        let forward = Vec3::from(camera.forward);
+        let side = forward.cross(Vec3::from(camera.up)).normalize();
+        camera.forward = (forward + tenth * side).to_array();
+        let after = render(&stage);
+        let [change, by_marching] =
+            [0, 1].map(|k| compare(&after[k], &before[k]).expect("same size").rel_mae);
+        let error = compare(&before[0], &before[1]).expect("same size").rel_mae;
+        println!("stable: {change:.4} {by_marching:.4} {error:.4}");
+        assert!(
+            change <= by_marching + error,
+            "{}: {change} {by_marching} {error}",
+            stage.name
+        );
     }
 }

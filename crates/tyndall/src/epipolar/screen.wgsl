@@ -1,4 +1,4 @@
-// Epipolar lines on the picture [pixels], (0, 0) at its top left corner; see screen.rs. The epipole is homogeneous, z >= 0:
+// Epipolar lines on the picture [pixels], (0, 0) at its top left corner; see epipole.rs. The epipole is homogeneous, z >= 0:
 // with z = 0 the lines are parallel.
 
 // Lines begin and end this far outside the picture [pixels]: pixels of its rim have samples on both sides, and no line

@@ -1,4 +1,4 @@
-// A slice in its shadow map; see trace.rs. In the plane of a slice a shadow map is a row of columns, and every view ray of
+// A slice in its shadow map. In the plane of a slice a shadow map is a row of columns, and every view ray of
 // the slice is a straight line over it, in the column coordinate t and a depth z that grows towards the light. One chart
 // serves a single map (t is the texel coordinate along which the slice's trace is longer, z the map's own depth), two serve
 // a cube (90 degrees each from the axis, t is projective, z is 1 / depth).

@@ -572,3 +572,33 @@ fn correct(
         r.indirect(list.into()),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::shader::FRAME_MODULES;
+    use tyndall_testkit::{rust_layout, shader::Shader};
+
+    #[test]
+    fn parameters_are_laid_out_as_in_wgsl() {
+        let modules = [FRAME_MODULES, &[SCREEN, COMMON]].concat();
+        let shader = Shader::new(&modules).expect("it is valid");
+        let found = shader.struct_layout("EpipolarParams").expect("it is there");
+        let ours = rust_layout!(ParamsUniform {
+            epipole,
+            slices,
+            axis,
+            samples,
+            initial_step,
+            threshold,
+            criterion,
+            columns,
+            levels,
+            downscale,
+            show,
+            coarse_size,
+            arc,
+        });
+        assert_eq!(found, ours);
+    }
+}
