@@ -142,7 +142,14 @@ impl LightScope<'_> {
             depth_or_array_layers: 1,
         };
         self.pool
-            .texture(self.device, (Some(self.index), name), size, 1, format, usage)
+            .texture(
+                self.device,
+                (Some(self.index), name),
+                size,
+                1,
+                format,
+                usage,
+            )
             .create_view(&wgpu::TextureViewDescriptor::default())
     }
 

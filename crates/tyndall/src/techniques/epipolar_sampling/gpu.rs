@@ -130,13 +130,13 @@ fn own(slots: &[Slot], airlight: bool) -> Vec<BindGroupLayoutEntry> {
         Slot::Uniform => layout::uniform::<TreeUniform>(binding),
         Slot::Read => layout::storage(binding, true),
         Slot::Write => layout::storage(binding, false),
-        Slot::Texels => layout::numbers(binding),
+        Slot::Texels => layout::texels(binding),
         Slot::Picture(format) => layout::storage_texture(binding, format),
     };
     let mut entries = vec![layout::uniform::<ParamsUniform>(0)];
     entries.extend((1..).zip(slots).map(entry));
     if airlight {
-        entries.push(layout::airlight(slots.len() as u32 + 1));
+        entries.push(layout::texel_layers(slots.len() as u32 + 1));
     }
     entries
 }
