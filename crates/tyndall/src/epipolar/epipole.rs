@@ -84,8 +84,10 @@ fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
     }
     let middle = away(0.5 * size);
     let corners = [0.0, 0.25, 0.5, 0.75].map(|border| {
-        let way = away(exit(size, border));
-        (middle.perp_dot(way).atan2(middle.dot(way)), border)
+        // The angle between the ways to the middle and to the corner; in parallel lines their order is left.
+        let corner = exit(size, border);
+        let across = epipole.z.max(1e-9) * middle.perp_dot(corner - 0.5 * size);
+        (across.atan2(middle.dot(away(corner))), border)
     });
     let first = corners
         .iter()

@@ -39,8 +39,9 @@ fn screen_direction(epipole: vec3f, point: vec2f) -> vec2f {
 // How far one can go from a point inside the border, axis by axis, until the border is met.
 fn screen_reach(size: vec2f, point: vec2f, direction: vec2f) -> vec2f {
     let border = select(vec2f(-SCREEN_MARGIN), size + SCREEN_MARGIN, direction > vec2f(0.0));
-    let way = select(direction, vec2f(1e-20), abs(direction) < vec2f(1e-20));
-    return max((border - point) / way, vec2f(0.0));
+    let along = abs(direction) < vec2f(1e-20);
+    let way = select(direction, vec2f(1.0), along);
+    return select(max((border - point) / way, vec2f(0.0)), vec2f(1e20), along);
 }
 
 fn screen_epipole_is_inside(size: vec2f, epipole: vec3f) -> bool {
