@@ -235,7 +235,7 @@ fn pictures_are_stable_as_the_camera_turns() {
     let march = technique("ray-march", &[steps(1024)]);
     for mut stage in poses(100, &["sun;", "lamp;", "spot;"])
         .into_iter()
-        .step_by(13)
+        .step_by(39)
     {
         let render = |stage: &Stage| {
             [epipolar(&[]), march.clone()].map(|t| on::on_gpu(gpu, effect, stage, t))
