@@ -276,13 +276,21 @@ fn passes(title: &str, timings: &Timings, count: usize) -> Table {
     let techniques = techniques.map(|(technique, timing)| (technique.info().name, timing));
     let limit = timings.limit.iter().map(|limit| ("limit", limit));
     let rows = techniques.chain(limit).flat_map(|(name, timing)| {
+        let all: f64 = timing.passes.iter().map(|(_, time)| time.median).sum();
         let passes = timing.passes.iter();
-        passes.map(move |(pass, time)| vec![Cell::text(name), Cell::text(pass), (*time).into()])
+        passes.map(move |(pass, time)| {
+            vec![
+                Cell::text(name),
+                Cell::text(pass),
+                (*time).into(),
+                (100.0 * time.median / all).into(),
+            ]
+        })
     });
     Table {
         title: format!("{title}: passes"),
         notes: Vec::new(),
-        columns: vec!["technique", "pass", "ms"],
+        columns: vec!["technique", "pass", "ms", "percent"],
         rows: rows.collect(),
     }
 }

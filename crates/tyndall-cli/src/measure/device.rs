@@ -51,6 +51,7 @@ impl<'a> DeviceStage<'a> {
         let world = World::new(setup, gpu, Needs::IN_SCATTER, format)?;
         let mut timestamps = Timestamps::new(&gpu.device);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        timestamps.begin(&mut encoder);
         world.draw_light_maps(setup, &mut encoder, timestamps.timer());
         world.draw_g_buffer(setup, &mut encoder, timestamps.timer());
         finish(gpu, encoder, &timestamps)?;
@@ -125,8 +126,8 @@ impl<'a> DeviceStage<'a> {
         record: impl FnOnce(&mut CommandEncoder, &mut Timestamps) -> Result<(), Failure>,
     ) -> Result<FrameTime, Failure> {
         let start = Instant::now();
-        timestamps.reset();
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        timestamps.begin(&mut encoder);
         record(&mut encoder, timestamps)?;
         let done = finish(self.gpu, encoder, timestamps);
         self.gpu.errors.else_result(done)?;

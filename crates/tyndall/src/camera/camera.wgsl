@@ -37,11 +37,15 @@ fn camera_view_depth(depth: f32) -> f32 {
 
 // The ray through a point of the picture [pixels], (0, 0) at the top left corner, that ends at this depth-buffer value.
 fn camera_ray(pixel: vec2f, depth: f32) -> Ray {
+    return camera_ray_to(pixel, camera_view_depth(depth));
+}
+
+// The same, that ends at this view depth [m].
+fn camera_ray_to(pixel: vec2f, view_depth: f32) -> Ray {
     let camera = frame.camera;
     let ndc = vec2f(2.0, -2.0) * (pixel / camera.size - 0.5);
     let on_plane = camera.center + camera.half_extent * ndc;
     let offset = on_plane.x * camera.right + on_plane.y * camera.up;
-    let view_depth = camera_view_depth(depth);
     if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
         return Ray(offset, max(view_depth, 0.0), camera.forward);
     }

@@ -102,6 +102,20 @@ impl CameraRays {
         (depth > 0.0).then(|| (0.5 + 0.5 * ndc * DVec2::new(1.0, -1.0)) * self.size)
     }
 
+    /// The point of the picture [pixels], homogeneous, of `(q, w)`: of the point at `q` from the eye where w = 1, of the
+    /// direction `q` where w = 0. z > 0 before a perspective camera, < 0 behind it.
+    pub(crate) fn homogeneous_pixel(&self, q: DVec3, w: f64) -> DVec3 {
+        let depth = if self.is_perspective() {
+            q.dot(self.forward)
+        } else {
+            w
+        };
+        let (half_extent, center) = self.plane();
+        let on_plane = DVec2::new(q.dot(self.right), q.dot(self.up));
+        let ndc = (on_plane - center * depth) / half_extent;
+        (0.5 * (DVec2::splat(depth) + ndc * DVec2::new(1.0, -1.0)) * self.size).extend(depth)
+    }
+
     /// True where a direction goes through the perspective picture, or misses it by less than `margin` pixels.
     pub(crate) fn sees(&self, direction: DVec3, margin: f64) -> bool {
         self.pixel(direction).is_some_and(|p| {

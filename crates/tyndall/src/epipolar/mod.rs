@@ -7,6 +7,8 @@
 
 pub(crate) mod cells;
 #[cfg(feature = "gpu")]
+pub(crate) mod epipole;
+#[cfg(feature = "gpu")]
 pub(crate) mod gpu;
 pub(crate) mod grid;
 pub(crate) mod low_rank;

@@ -30,6 +30,19 @@ pub(crate) fn storage(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEnt
     entry
 }
 
+/// A 2-D texture that a compute shader writes, at `binding`.
+pub(crate) fn storage_texture(
+    binding: u32,
+    format: wgpu::TextureFormat,
+) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    };
+    entry(binding, ty)
+}
+
 /// A 2-D texture of floats at `binding` that is read texel by texel.
 pub(crate) fn texels(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let texels = wgpu::TextureSampleType::Float { filterable: false };

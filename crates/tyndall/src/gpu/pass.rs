@@ -26,7 +26,20 @@ pub(crate) struct Dispatch {
     pub(crate) pipeline: wgpu::ComputePipeline,
     /// Bind groups 0, 1 and so on.
     pub(crate) groups: Vec<wgpu::BindGroup>,
-    pub(crate) workgroups: [u32; 3],
+    pub(crate) workgroups: Workgroups,
+}
+
+/// How many workgroups a dispatch has.
+pub(crate) enum Workgroups {
+    Count([u32; 3]),
+    /// Three numbers that an earlier pass wrote to a buffer, at this offset [bytes].
+    Indirect(wgpu::Buffer, u64),
+}
+
+impl From<[u32; 3]> for Workgroups {
+    fn from(count: [u32; 3]) -> Self {
+        Self::Count(count)
+    }
 }
 
 /// One full-screen draw.
@@ -74,8 +87,12 @@ impl Pass {
                     for (i, group) in dispatch.groups.iter().enumerate() {
                         pass.set_bind_group(i as u32, group, &[]);
                     }
-                    let [x, y, z] = dispatch.workgroups;
-                    pass.dispatch_workgroups(x, y, z);
+                    match &dispatch.workgroups {
+                        Workgroups::Count([x, y, z]) => pass.dispatch_workgroups(*x, *y, *z),
+                        Workgroups::Indirect(buffer, offset) => {
+                            pass.dispatch_workgroups_indirect(buffer, *offset);
+                        }
+                    }
                 }
             }
             Work::FullScreen(draws) => {

@@ -80,6 +80,8 @@ pub(crate) struct Recipe {
     own: wgpu::BindGroupLayout,
     /// How a render pass draws.
     raster: Raster,
+    /// Whether lights of different kinds need pipelines of their own.
+    reads_light: bool,
     /// Overrides besides the light's.
     constants: Vec<(&'static str, f64)>,
 }
@@ -160,6 +162,7 @@ impl<P: Pipeline> Program<P> {
             }),
             own,
             raster: Raster::full_screen(shared.output.into()),
+            reads_light: true,
             constants: Vec::new(),
         };
         Self {
@@ -186,6 +189,12 @@ impl<P: Pipeline> Program<P> {
         self
     }
 
+    /// Of a shader that does not read the light: one pipeline does for all.
+    pub(crate) fn for_all_lights(mut self) -> Self {
+        self.recipe.reads_light = false;
+        self
+    }
+
     /// Bind group 2 of these resources, at bindings 0, 1 and so on.
     pub(crate) fn bind(
         &self,
@@ -205,6 +214,11 @@ impl<P: Pipeline> Program<P> {
 
     /// The pipeline for this kind of light.
     pub(crate) fn get(&self, device: &wgpu::Device, variant: LightVariant) -> P {
+        let variant = if self.recipe.reads_light {
+            variant
+        } else {
+            LightVariant::default()
+        };
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let make = || {
             let mut constants = variant.constants().to_vec();

@@ -3,7 +3,7 @@
 use super::{
     airlight::AirlightPictures,
     layout::{self, Absent},
-    pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work},
+    pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
     pool::Pool,
     program::{ComputeProgram, ScreenProgram},
     uniforms::LightVariant,
@@ -122,13 +122,46 @@ impl LightScope<'_> {
             .texture(self.device, key, size, levels, format, usage)
     }
 
+    /// A storage buffer of this light that holds workgroups of so many dispatches.
+    pub(crate) fn indirect(&mut self, name: &'static str, dispatches: u64) -> wgpu::Buffer {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
+        let bytes = dispatches * size_of::<[u32; 3]>() as u64;
+        self.pool
+            .buffer(self.device, (Some(self.index), name), bytes, usage)
+    }
+
+    /// A texture of this light that a compute shader writes and others read.
+    pub(crate) fn storage_texture(
+        &mut self,
+        name: &'static str,
+        [width, height]: [u32; 2],
+        format: wgpu::TextureFormat,
+    ) -> wgpu::TextureView {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let size = wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
+        self.pool
+            .texture(
+                self.device,
+                (Some(self.index), name),
+                size,
+                1,
+                format,
+                usage,
+            )
+            .create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
     /// A pass of one dispatch over the frame, the light and `resources`.
     pub(crate) fn compute(
         &self,
         program: &ComputeProgram,
         name: &str,
         resources: &[wgpu::BindingResource<'_>],
-        workgroups: [u32; 3],
+        workgroups: impl Into<Workgroups>,
     ) -> Pass {
         let dispatch = self.dispatch(program, resources, workgroups);
         Pass::compute(self.pass_name(name), vec![dispatch])
@@ -139,12 +172,12 @@ impl LightScope<'_> {
         &self,
         program: &ComputeProgram,
         resources: &[wgpu::BindingResource<'_>],
-        workgroups: [u32; 3],
+        workgroups: impl Into<Workgroups>,
     ) -> Dispatch {
         Dispatch {
             pipeline: program.get(self.device, self.variant),
             groups: self.groups(program.bind(self.device, resources)),
-            workgroups,
+            workgroups: workgroups.into(),
         }
     }
 

@@ -21,6 +21,11 @@ pub(crate) const STRETCH: &str = include_str!("../light/stretch.wgsl");
 /// Bind group 1: shadow maps.
 pub(crate) const SHADOW: &str = include_str!("../shadow/shadow.wgsl");
 
+/// Epipolar lines on the picture.
+pub(crate) const SCREEN: &str = include_str!("../epipolar/screen.wgsl");
+/// Slices in their shadow map; needs `SCREEN`, frame and light.
+pub(crate) const TRACE: &str = include_str!("../epipolar/trace.wgsl");
+
 /// What a pass needs that reads the camera, the medium and the depth buffer.
 pub(crate) const FRAME_MODULES: &[&str] = &[PHASE, TRANSMITTANCE, MEDIUM, CAMERA, FRAME];
 /// What a pass needs besides that reads a light and its shadow map.

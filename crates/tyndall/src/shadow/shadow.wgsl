@@ -92,6 +92,18 @@ fn shadow_line_end(line: ShadowLine, depth: f32) -> f32 {
     return (depth * line.terms.x - line.terms.y) / (line.terms.z - depth * line.terms.w);
 }
 
+// The tint of the glass between a point (in the map's own space) and the light.
+fn shadow_glass_at(p: vec4f) -> vec3f {
+    if SHADOW_KIND == SHADOW_NONE || !SHADOW_GLASS {
+        return vec3f(1.0);
+    }
+    let place = shadow_point(p);
+    if any(place.uv < vec2f(0.0)) || any(place.uv >= vec2f(1.0)) {
+        return vec3f(1.0);
+    }
+    return shadow_glass_tint(place);
+}
+
 // True iff light reaches a point at this depth past what the map holds; 0 is nothing at all.
 fn shadow_reaches(depth: f32, held: f32) -> bool {
     let stored = select(held, 1.0 - held, light.standard_depth == 1u);
@@ -154,4 +166,23 @@ fn shadow_glass_nearest(texel: vec2u, face: u32) -> f32 {
         }
     }
     return 0.0;
+}
+
+// The part of the span [m] of a ray that a single map covers, empty where x >= y; beyond it everything is lit.
+fn shadow_covered(map_ray: ShadowRay, span: vec2f) -> vec2f {
+    // w - x, w + x, w - y, w + y >= 0, each linear in s.
+    let constant = vec4f(map_ray.c0.w) + map_ray.c0.xxyy * vec4f(-1.0, 1.0, -1.0, 1.0);
+    let slope = vec4f(map_ray.c1.w) + map_ray.c1.xxyy * vec4f(-1.0, 1.0, -1.0, 1.0);
+    var covered = span;
+    for (var i = 0; i < 4; i++) {
+        let crossing = -constant[i] / select(slope[i], 1e-30, slope[i] == 0.0);
+        if slope[i] > 0.0 {
+            covered.x = max(covered.x, crossing);
+        } else if slope[i] < 0.0 {
+            covered.y = min(covered.y, crossing);
+        } else if constant[i] < 0.0 {
+            covered.y = covered.x;
+        }
+    }
+    return covered;
 }

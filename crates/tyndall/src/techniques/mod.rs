@@ -1,5 +1,6 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
+pub mod epipolar_sampling;
 pub mod incremental;
 pub mod light_volume;
 pub mod min_max;
@@ -34,6 +35,8 @@ pub enum Technique {
     Incremental(incremental::Params),
     /// Polygonal light volumes.
     LightVolume(light_volume::Params),
+    /// Epipolar sampling.
+    Epipolar(epipolar_sampling::Params),
 }
 
 /// Which backends a technique runs on.
@@ -92,6 +95,7 @@ pub struct TechniqueInfo {
 pub const TABLE: &[TechniqueInfo] = &[
     min_max::INFO,
     ray_march::INFO,
+    epipolar_sampling::INFO,
     light_volume::INFO,
     incremental::INFO,
     reference::INFO,
@@ -126,6 +130,7 @@ impl Technique {
             Self::MinMax(_) => &min_max::INFO,
             Self::Incremental(_) => &incremental::INFO,
             Self::LightVolume(_) => &light_volume::INFO,
+            Self::Epipolar(_) => &epipolar_sampling::INFO,
         }
     }
 
@@ -137,6 +142,7 @@ impl Technique {
             Self::MinMax(p) => p.list(),
             Self::Incremental(p) => p.list(),
             Self::LightVolume(p) => p.list(),
+            Self::Epipolar(p) => p.list(),
         }
     }
 
@@ -151,6 +157,7 @@ impl Technique {
             Self::MinMax(p) => p.set(key, value),
             Self::Incremental(p) => p.set(key, value),
             Self::LightVolume(p) => p.set(key, value),
+            Self::Epipolar(p) => p.set(key, value),
         }
     }
 
@@ -164,8 +171,9 @@ impl Technique {
             Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
-            Self::LightVolume(_) => Err(PrepareError::Unsupported {
-                technique: light_volume::INFO.name,
+            // The table says they are the GPU's.
+            Self::LightVolume(_) | Self::Epipolar(_) => Err(PrepareError::Unsupported {
+                technique: self.info().name,
                 what: "its work on the CPU".into(),
             }),
         }
@@ -179,6 +187,7 @@ pub(crate) struct Programs {
     ray_march: OnceLock<ScreenProgram>,
     min_max: OnceLock<min_max::gpu::Programs>,
     light_volume: OnceLock<light_volume::gpu::Programs>,
+    epipolar: OnceLock<epipolar_sampling::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -187,7 +196,7 @@ impl Technique {
     pub(crate) fn check_gpu(
         &self,
         limits: &wgpu::Limits,
-        _size: [u32; 2],
+        size: [u32; 2],
         index: usize,
         light: &Light,
         inputs: &LightInputs<'_>,
@@ -195,6 +204,7 @@ impl Technique {
         match self {
             Self::LightVolume(p) => light_volume::gpu::check(p, limits, index, light, inputs),
             Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
+            Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
             _ => Ok(()),
         }
     }
@@ -218,6 +228,10 @@ impl Technique {
                 let programs =
                     programs.get_or_init(|| light_volume::gpu::Programs::new(device, shared));
                 light_volume::gpu::passes(p, programs, scope)
+            }
+            Self::Epipolar(p) => {
+                let make = || epipolar_sampling::gpu::Programs::new(device, shared);
+                epipolar_sampling::gpu::passes(p, programs.epipolar.get_or_init(make), scope)
             }
             // Refused by the table: they have no GPU side.
             Self::Reference(_) | Self::Incremental(_) => Vec::new(),

@@ -1,5 +1,7 @@
 //! A stage on the GPU: its pictures as textures, and the effect's output read back.
 
+use std::sync::OnceLock;
+
 use tyndall::{
     Effect, EffectOptions, FrameInputs, LightInputs, OutputPrecision,
     cpu::{GlassMap, LightTexture},
@@ -187,21 +189,14 @@ const WRITE_DEPTH: &str = "
     return textureLoad(values, vec2u(p.xy), 0).r;
 }";
 
-/// A depth texture of these values; they can only be drawn, not copied.
-fn depth_texture(gpu: &TestDevice, size: [u32; 2], layers: u32, values: &[f32]) -> wgpu::Texture {
-    let format = wgpu::TextureFormat::Depth32Float;
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
-        ..descriptor(format, size, layers)
-    });
+fn depth_writer(gpu: &TestDevice, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
     let module = gpu
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
             source: wgpu::ShaderSource::Wgsl(WRITE_DEPTH.into()),
         });
-    let pipeline = gpu
-        .device
+    gpu.device
         .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: None,
             layout: None,
@@ -228,7 +223,18 @@ fn depth_texture(gpu: &TestDevice, size: [u32; 2], layers: u32, values: &[f32]) 
             multisample: Default::default(),
             multiview_mask: None,
             cache: None,
-        });
+        })
+}
+
+/// A depth texture of these values; they can only be drawn, not copied.
+fn depth_texture(gpu: &TestDevice, size: [u32; 2], layers: u32, values: &[f32]) -> wgpu::Texture {
+    let format = wgpu::TextureFormat::Depth32Float;
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        ..descriptor(format, size, layers)
+    });
+    static WRITER: OnceLock<wgpu::RenderPipeline> = OnceLock::new();
+    let pipeline = WRITER.get_or_init(|| depth_writer(gpu, format));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     for (layer, values) in values.chunks((size[0] * size[1]) as usize).enumerate() {
         let source = upload(
@@ -265,7 +271,7 @@ fn depth_texture(gpu: &TestDevice, size: [u32; 2], layers: u32, values: &[f32]) 
             }),
             ..Default::default()
         });
-        pass.set_pipeline(&pipeline);
+        pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
     }

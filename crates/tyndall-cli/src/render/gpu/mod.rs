@@ -69,6 +69,7 @@ impl Pipeline {
         layers: &[Layer],
     ) -> Result<Rendered, Failure> {
         let mut encoder = self.device.create_command_encoder(&Default::default());
+        self.timestamps.begin(&mut encoder);
         self.draw_world(setup, needs, &mut encoder);
         if needs.in_scatter {
             self.draw_in_scatter(setup, &mut encoder)?;

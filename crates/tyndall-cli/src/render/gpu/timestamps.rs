@@ -1,4 +1,7 @@
 //! Milliseconds a pass, from the device's timestamps.
+//!
+//! A pass is taken to last from the end of the pass before it, for its own first timestamp may come late: lavapipe writes
+//! that of a compute pass when the work is done. An empty pass marks where the first one begins.
 
 use tyndall::gpu::PassTimer;
 use tyndall_scene::gpu::readback;
@@ -44,10 +47,14 @@ impl Timestamps {
         self.0.as_mut().map(|timed| &mut timed.timer)
     }
 
-    /// Forgets the passes of the frame before.
-    pub(crate) fn reset(&mut self) {
+    /// Forgets the passes of the frame before, and marks where the next ones begin.
+    pub(crate) fn begin(&mut self, encoder: &mut CommandEncoder) {
         if let Some(timer) = self.timer() {
             timer.reset();
+            encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("start of the passes"),
+                timestamp_writes: timer.compute_pass("start"),
+            });
         }
     }
 
@@ -78,10 +85,14 @@ impl Timestamps {
         let bytes = readback::map(device, mappable).map_err(Failure::device)?;
         let period = f64::from(queue.get_timestamp_period()) * 1e-6;
         let (ticks, _) = bytes.as_chunks::<8>();
-        let milliseconds = ticks.chunks_exact(2).map(|pass| {
-            let [begin, end] = [pass[0], pass[1]].map(u64::from_le_bytes);
-            end.saturating_sub(begin) as f64 * period
-        });
-        Ok(timer.names().iter().cloned().zip(milliseconds).collect())
+        let ends: Vec<u64> = ticks
+            .chunks_exact(2)
+            .map(|pass| u64::from_le_bytes(pass[1]))
+            .collect();
+        let milliseconds = ends
+            .windows(2)
+            .map(|pair| pair[1].saturating_sub(pair[0]) as f64 * period);
+        let names = timer.names().iter().skip(1).cloned();
+        Ok(names.zip(milliseconds).collect())
     }
 }

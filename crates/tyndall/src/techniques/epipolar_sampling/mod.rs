@@ -1,0 +1,341 @@
+//! `epipolar`: epipolar sampling with 1-D min/max trees (Engelhardt & Dachsbacher 2010; Yusov 2012).
+//!
+//! Shafts run along the lines of the picture that meet at the light's place on it, the epipole. Along a line the light
+//! varies slowly but where depths break. So rays are marched at a few samples of each line, more where depths break, and
+//! the rest is interpolated. All rays of a line lie in one plane with the light, and see one row of the shadow map; a tree
+//! of (min, max) over the row finds their lit stretches in few steps.
+//!
+//! The article's stages, each a pass: linear depth; slice end points; coordinate texture (the depth of every sample);
+//! refinement and marking (which samples are marched); slice directions and min/max tree; ray marching; interpolation;
+//! unwarping to a picture `downscale` times smaller, by a filter that is bilinear as far as depths are alike; correction of
+//! the pixels that have no such samples; upscaling and a second correction where the picture is smaller; the phase function.
+//!
+//! What differs from the article:
+//!
+//! - What is interpolated is the mean visibility: the light that is seen as a share of what would be seen if nothing blocked
+//!   it, `L = v(pixel) L_unshadowed(pixel)`. The article takes the phase function of the sun out of the interpolation; this
+//!   takes out the dependence on depth, the peak beside a local light and a spot's cone, too. Light that nothing blocks is
+//!   exact. Relative error on 1280 x 960 pixels of terrain: 5e-4.
+//! - In its slice a ray is a straight line over columns of the shadow map, in the coordinates (t, z) that perspective keeps
+//!   straight; one that crosses a column's depth is lit in part. So rays near the epipole, that cross few columns, need no
+//!   other treatment. A cube map is resampled on the fly to two charts of 90 degrees a slice.
+//! - Nodes are compared with the same numbers as columns, and lit columns that adjoin make one stretch, integrated in closed
+//!   form: with trees and without (`tree`) results are equal bit by bit.
+//! - Slices are spread over the part of the border that lines end on, not all of it; lines begin a twentieth of a pixel
+//!   beside an epipole on the picture, and go a pixel beyond its rim.
+//! - A corrected pixel is marched in its two slices' trees instead of step by step, and weighted like an interpolated one.
+//!
+//! `initial_step` and `threshold` trade time for error: the same terrain with 4 and 0.01 has an error of 2e-4 for a
+//! few milliseconds more. Pictures and coloured glass are looked up column by column of every lit stretch.
+//!
+//! Cost: slices x map side texels for the trees, some nodes a marched sample, and a few texels a pixel: most of the time
+//! goes into the stages over pixels.
+//!
+//! Where it fails: shadows finer than the slices are apart are blurred across them, and ends of shafts between two marched
+//! samples are blurred along them. Pictures of thin leaves have a depth break at most samples: all are marched.
+
+#[cfg(feature = "gpu")]
+pub(crate) mod gpu;
+
+use super::{
+    Backends, LightKind, Technique, TechniqueInfo, Value,
+    params::{Param, Parameters, word},
+};
+#[cfg(feature = "gpu")]
+use crate::{
+    effect::LightInputs,
+    error::PrepareError,
+    frame::{Light, ShadowProjection},
+};
+
+/// The entry in the table.
+pub(super) const INFO: TechniqueInfo = TechniqueInfo {
+    name: "epipolar",
+    about: "epipolar sampling with 1-D min/max trees: few rays marched along epipolar lines, the rest interpolated",
+    citation: "Engelhardt & Dachsbacher, Epipolar Sampling for Shadows and Crepuscular Rays in Participating Media with Single Scattering, I3D 2010; Yusov, IVB Atmospheric Light Scattering, 2012",
+    lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    backends: Backends::Gpu,
+    default: || Technique::Epipolar(Params::DEFAULT),
+};
+
+/// Parameters of `epipolar`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Epipolar slices (0 to 4096); 0: half of width plus height.
+    pub slices: u32,
+    /// Samples a slice (0 or 2 to 4096); 0: half of the longer side.
+    pub samples: u32,
+    /// Samples from one that is marched to the next, where no depths differ (a power of two, 1 to 128).
+    pub initial_step: u32,
+    /// How many times smaller the picture is on each side that samples are unwarped to (1, 2 or 4).
+    pub downscale: u32,
+    /// Relative difference between neighbours past which one does not stand for the other (> 0, to 1).
+    pub threshold: f64,
+    /// What that is a difference of.
+    pub criterion: Criterion,
+    /// Which algorithm marches.
+    pub tree: Tree,
+    /// What the picture shows.
+    pub show: Show,
+}
+
+/// What must not differ too much between samples that stand for each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// View depth.
+    Depth,
+    /// What would be scattered if nothing blocked the light.
+    InScatter,
+}
+
+/// How rays are marched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tree {
+    /// With 1-D min/max trees (the article's algorithm 2).
+    MinMax,
+    /// Column by column (algorithm 1).
+    None,
+}
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Show {
+    /// In-scattered light.
+    Light,
+    /// Samples: white where marched, blue where interpolated.
+    Samples,
+    /// Samples that are marched because of a break.
+    DepthBreaks,
+    /// Pixels that had no fitting sources, red.
+    Corrected,
+    /// What is interpolated, before the phase function.
+    InScatter,
+}
+
+const CRITERIA: &[(&str, Criterion)] = &[
+    ("depth", Criterion::Depth),
+    ("in-scatter", Criterion::InScatter),
+];
+const TREES: &[(&str, Tree)] = &[("min-max", Tree::MinMax), ("none", Tree::None)];
+const SHOWN: &[(&str, Show)] = &[
+    ("light", Show::Light),
+    ("samples", Show::Samples),
+    ("depth-breaks", Show::DepthBreaks),
+    ("corrected", Show::Corrected),
+    ("in-scatter", Show::InScatter),
+];
+
+impl Params {
+    const DEFAULT: Self = Self {
+        slices: 512,
+        samples: 256,
+        initial_step: 16,
+        downscale: 1,
+        threshold: 0.03,
+        criterion: Criterion::Depth,
+        tree: Tree::MinMax,
+        show: Show::Light,
+    };
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl Parameters for Params {
+    const TECHNIQUE: &'static str = INFO.name;
+    const PARAMS: &'static [&'static [Param<Self>]] = &[&[
+        Param {
+            key: "slices",
+            about: "epipolar slices; 0: half of width plus height",
+            range: "a whole number from 0 to 4096",
+            get: |p| Value::Integer(p.slices.into()),
+            set: |p, v| {
+                p.slices = v.integer(0..=4096)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "samples",
+            about: "samples a slice; 0: half of the picture's longer side",
+            range: "0, or a whole number from 2 to 4096",
+            get: |p| Value::Integer(p.samples.into()),
+            set: |p, v| {
+                p.samples = v.integer(0..=4096).filter(|n| *n != 1)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "initial_step",
+            about: "samples from one that is marched to the next, where no depths differ",
+            range: "a power of two from 1 to 128",
+            get: |p| Value::Integer(p.initial_step.into()),
+            set: |p, v| {
+                p.initial_step = v.integer(1..=128).filter(|n| n.is_power_of_two())?;
+                Some(())
+            },
+        },
+        Param {
+            key: "downscale",
+            about: "how many times smaller the picture is on each side that samples are unwarped to",
+            range: "1, 2 or 4",
+            get: |p| Value::Integer(p.downscale.into()),
+            set: |p, v| {
+                p.downscale = v.integer(1..=4).filter(|n| n.is_power_of_two())?;
+                Some(())
+            },
+        },
+        Param {
+            key: "threshold",
+            about: "relative difference between neighbours past which one does not stand for the other",
+            range: "a number from 0.0001 to 1",
+            get: |p| Value::Real(p.threshold),
+            set: |p, v| {
+                p.threshold = v.real(1e-4..=1.0)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "criterion",
+            about: "what must differ for a break between samples: their depths, or their unshadowed light",
+            range: "\"depth\" or \"in-scatter\"",
+            get: |p| word(&p.criterion, CRITERIA),
+            set: |p, v| {
+                p.criterion = v.choice(CRITERIA)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "tree",
+            about: "march with 1-D min/max trees, or column by column",
+            range: "\"min-max\" or \"none\"",
+            get: |p| word(&p.tree, TREES),
+            set: |p, v| {
+                p.tree = v.choice(TREES)?;
+                Some(())
+            },
+        },
+        Param {
+            key: "show",
+            about: "the light, or in its place a view of how it was computed",
+            range: "\"light\", \"samples\", \"depth-breaks\", \"corrected\" or \"in-scatter\"",
+            get: |p| word(&p.show, SHOWN),
+            set: |p, v| {
+                p.show = v.choice(SHOWN)?;
+                Some(())
+            },
+        },
+    ]];
+}
+
+/// How large everything is for one light.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Sizes {
+    slices: u32,
+    samples: u32,
+    /// Charts a slice: two where the shadow map is a cube.
+    charts: u32,
+    /// Leaves of a tree.
+    columns: u32,
+    /// Levels of a tree above its leaves; 0: no trees.
+    levels: u32,
+    /// Width and height of what samples are unwarped to [pixels].
+    coarse: [u32; 2],
+    size: [u32; 2],
+}
+
+/// Bytes of each buffer.
+#[cfg(feature = "gpu")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Bytes {
+    lines: u64,
+    traces: u64,
+    depth: u64,
+    sources: u64,
+    nodes: u64,
+    values: u64,
+    coarse_list: u64,
+    list: u64,
+}
+
+#[cfg(feature = "gpu")]
+impl Sizes {
+    fn new(params: &Params, size: [u32; 2], light: &Light, inputs: &LightInputs<'_>) -> Self {
+        let or = |n: u32, rule: u32| if n == 0 { rule } else { n };
+        let map = inputs.shadow_map.map(|map| map.texture().size());
+        let side = map.map_or(1, |map| map.width.max(map.height));
+        let columns = side.next_power_of_two();
+        let has_tree = params.tree == Tree::MinMax && map.is_some();
+        Self {
+            slices: or(params.slices, size[0].midpoint(size[1])).clamp(1, 4096),
+            samples: or(params.samples, size[0].max(size[1]) / 2).clamp(2, 4096),
+            charts: match light.shadow {
+                Some(ShadowProjection::Cube { .. }) => 2,
+                _ => 1,
+            },
+            columns,
+            levels: if has_tree {
+                columns.ilog2().min(MOST_LEVELS)
+            } else {
+                0
+            },
+            coarse: size.map(|n| n.div_ceil(params.downscale)),
+            size,
+        }
+    }
+
+    fn bytes(&self) -> Bytes {
+        let slices = u64::from(self.slices);
+        let samples = slices * u64::from(self.samples);
+        let area = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+        let nodes = slices * u64::from(self.charts) * u64::from(self.columns);
+        Bytes {
+            lines: 16 * slices,
+            traces: 32 * slices,
+            depth: 4 * samples,
+            sources: 4 * samples,
+            nodes: if self.levels > 0 { 8 * nodes } else { 8 },
+            values: 16 * samples,
+            coarse_list: 4 * area(self.coarse),
+            list: 4 * area(self.size),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+impl Params {
+    /// Refuses what does not fit into the device's storage bindings.
+    pub(crate) fn check_gpu(
+        &self,
+        limits: &wgpu::Limits,
+        size: [u32; 2],
+        index: usize,
+        light: &Light,
+        inputs: &LightInputs<'_>,
+    ) -> Result<(), PrepareError> {
+        let bytes = Sizes::new(self, size, light, inputs).bytes();
+        let allowed = limits.max_storage_buffer_binding_size;
+        for (what, needed) in [
+            ("min/max trees", bytes.nodes),
+            ("samples", bytes.values),
+            ("lists of pixels", bytes.list),
+        ] {
+            if needed > allowed {
+                return Err(PrepareError::Unsupported {
+                    technique: INFO.name,
+                    what: format!(
+                        "`lights[{index}]` within `max_storage_buffer_binding_size` {allowed}, for its {what} take {needed} bytes"
+                    ),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Levels of a tree; coarser nodes are hardly ever lit or dark as a whole (Yusov 2012, section 6.3).
+#[cfg(feature = "gpu")]
+const MOST_LEVELS: u32 = 12;
