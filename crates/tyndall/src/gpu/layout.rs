@@ -23,10 +23,16 @@ pub(crate) fn storage(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEnt
         has_dynamic_offset: false,
         min_binding_size: None,
     };
-    let mut entry = entry(binding, buffer);
-    if !read_only {
-        entry.visibility.remove(wgpu::ShaderStages::VERTEX);
+    if read_only {
+        return entry(binding, buffer);
     }
+    writable(binding, buffer)
+}
+
+/// What vertices may not see without a feature of their own.
+fn writable(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    let mut entry = entry(binding, ty);
+    entry.visibility.remove(wgpu::ShaderStages::VERTEX);
     entry
 }
 
@@ -40,7 +46,7 @@ pub(crate) fn storage_texture(
         format,
         view_dimension: wgpu::TextureViewDimension::D2,
     };
-    entry(binding, ty)
+    writable(binding, ty)
 }
 
 /// A 2-D texture of floats at `binding` that is read texel by texel.
