@@ -104,6 +104,7 @@ impl CameraRays {
 
     /// The point of the picture [pixels], homogeneous, of `(q, w)`: of the point at `q` from the eye where w = 1, of the
     /// direction `q` where w = 0. z > 0 before a perspective camera, < 0 behind it.
+    #[cfg(feature = "gpu")]
     pub(crate) fn homogeneous_pixel(&self, q: DVec3, w: f64) -> DVec3 {
         let depth = if self.is_perspective() {
             q.dot(self.forward)
