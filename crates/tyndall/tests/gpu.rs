@@ -2,7 +2,9 @@
 
 mod common;
 
-use common::{SIZE, Stage, crowd, gpu as on, noise, stages, steps, technique};
+use common::{
+    SIZE, Stage, crowd, gpu as on, noise, perspective_stages, stages, steps, svd, technique,
+};
 use tyndall::{
     CreateError, FrameInputs, camera::CameraRays, frame::ShadowProjection, techniques::Value,
 };
@@ -29,6 +31,26 @@ fn marching_agrees_with_the_cpu() {
             // Largest measured on lavapipe: 8e-4.
             assert!(error < 2e-3, "{}, {spacing:?}: {error}", stage.name);
         }
+    }
+}
+
+#[test]
+fn svd_agrees_with_the_cpu() {
+    let Some(gpu) = device_or_skip("the svd integrator on the GPU") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for stage in perspective_stages() {
+        let analytic = on::on_gpu(gpu, &effect, &stage, technique("min-max", &[]));
+        let exact = stage.on_cpu(technique("min-max", &[]));
+        let ours = on::on_gpu(gpu, &effect, &stage, svd(4));
+        let [a, b, c] = [
+            compare(&ours, &stage.on_cpu(svd(4))),
+            compare(&ours, &analytic),
+            compare(&analytic, &exact),
+        ]
+        .map(|e| e.expect("same size").rel_mae);
+        eprintln!("E {a:.5} {b:.5} {c:.5} {}", stage.name);
     }
 }
 

@@ -58,6 +58,12 @@ pub(crate) fn steps(n: i64) -> (&'static str, Value) {
     ("steps", Value::Integer(n))
 }
 
+/// `min-max` with the svd integrator.
+pub(crate) fn svd(rank: i64) -> Technique {
+    let integrator = ("integrator", Value::Word("svd".into()));
+    technique("min-max", &[integrator, ("rank", Value::Integer(rank))])
+}
+
 impl Stage {
     pub(crate) fn cpu_lights(&self) -> Vec<CpuLightInputs<'_>> {
         fn inputs(light: &StageLight) -> CpuLightInputs<'_> {
@@ -371,6 +377,13 @@ pub(crate) fn stages() -> Vec<Stage> {
             stages.push(stage(name, *camera, medium.clone(), light, glass));
         }
     }
+    stages
+}
+
+/// The stages whose camera has an eye.
+pub(crate) fn perspective_stages() -> Vec<Stage> {
+    let mut stages = stages();
+    stages.retain(|s| matches!(s.frame.camera.projection, Projection::Perspective { .. }));
     stages
 }
 

@@ -31,7 +31,7 @@
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
-mod svd;
+pub(crate) mod svd;
 
 use super::{
     Backends, LightKind, Technique, TechniqueInfo,
