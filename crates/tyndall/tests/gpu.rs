@@ -3,7 +3,8 @@
 mod common;
 
 use common::{
-    SIZE, Stage, crowd, gpu as on, noise, perspective_stages, stages, steps, svd, technique,
+    SIZE, Stage, crowd, epipole_stages, gpu as on, noise, perspective_stages, seam_errors, stages,
+    steps, svd, technique,
 };
 use tyndall::{
     CreateError, FrameInputs, camera::CameraRays, frame::ShadowProjection, techniques::Value,
@@ -34,23 +35,44 @@ fn marching_agrees_with_the_cpu() {
     }
 }
 
+/// Same factors. What differs: borders, and a light's picture, which the GPU sums up in columns of each slice; here of
+/// slices two degrees wide.
 #[test]
-fn svd_agrees_with_the_cpu() {
+fn svd_agrees_with_the_cpu_and_with_closed_forms() {
     let Some(gpu) = device_or_skip("the svd integrator on the GPU") else {
         return;
     };
     let effect = on::effect(gpu);
-    for stage in perspective_stages() {
-        let analytic = on::on_gpu(gpu, &effect, &stage, technique("min-max", &[]));
-        let exact = stage.on_cpu(technique("min-max", &[]));
+    for stage in perspective_stages().into_iter().step_by(2) {
         let ours = on::on_gpu(gpu, &effect, &stage, svd(4));
-        let [a, b, c] = [
-            compare(&ours, &stage.on_cpu(svd(4))),
-            compare(&ours, &analytic),
-            compare(&analytic, &exact),
-        ]
-        .map(|e| e.expect("same size").rel_mae);
-        eprintln!("E {a:.5} {b:.5} {c:.5} {}", stage.name);
+        let twin = stage.on_cpu(svd(4));
+        let analytic = on::on_gpu(gpu, &effect, &stage, technique("min-max", &[]));
+        let has_picture = stage.frame.lights[0].texture.is_some();
+        // Largest measured on lavapipe: 0.038 and 0.0193; 0.0149.
+        let twin_bound = if has_picture { 0.05 } else { 0.025 };
+        for (other, bound) in [(twin, twin_bound), (analytic, 0.02)] {
+            let error = compare(&ours, &other).expect("same size").rel_mae;
+            assert!(error < bound, "{}: {error}", stage.name);
+        }
+    }
+}
+
+/// Rays near the epipole are walked, the others go through trees: no seam between them.
+#[test]
+fn no_seam_about_the_epipole() {
+    let Some(gpu) = device_or_skip("the epipole on the GPU") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for (stage, axis) in epipole_stages() {
+        let truth = stage.on_cpu(of_the_map());
+        let errors = seam_errors(&stage, axis, &truth, |t| {
+            on::on_gpu(gpu, &effect, &stage, t)
+        });
+        for (radius, error) in errors {
+            // Largest measured on lavapipe: 4.8e-4.
+            assert!(error < 8e-4, "{}, {radius}: {error}", stage.name);
+        }
     }
 }
 

@@ -43,8 +43,9 @@ const SVD: &str = include_str!("svd.wgsl");
 const SVD_STRETCH: &str = include_str!("svd_stretch.wgsl");
 const GLASS: &str = include_str!("glass.wgsl");
 
-/// Columns of tints a slice of the svd integrator, whose rows are as many as its terms (Chen 2011, section 4.3).
-const SVD_COLUMNS: usize = 512;
+/// Columns of tints a slice: those of the svd integrator, whose rows are as many as its terms (Chen 2011, section 4.3),
+/// and the least of the analytic one, for a coarse shadow map may go with a fine picture.
+const TINT_COLUMNS: usize = 512;
 
 /// `Svd` of `svd.wgsl`.
 #[repr(C)]
@@ -136,7 +137,13 @@ pub(crate) fn passes(
 ) -> Vec<Pass> {
     let grid = grid(params, scope);
     let is_svd = params.integrator == Integrator::Svd;
-    let columns = |grid: &EpipolarGrid| if is_svd { SVD_COLUMNS } else { grid.samples };
+    let columns = |grid: &EpipolarGrid| {
+        if is_svd {
+            TINT_COLUMNS
+        } else {
+            grid.samples.max(TINT_COLUMNS)
+        }
+    };
     let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| grid.uniform(columns(&grid)));
     let uniform = scope.uniform("epipolar grid", &epipolar);
     let rank = if is_svd { params.rank } else { 1 };
