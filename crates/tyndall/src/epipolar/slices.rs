@@ -86,6 +86,7 @@ impl Slices {
     }
 
     /// True where the last slice is a neighbour of the first.
+    #[cfg(feature = "gpu")]
     pub(crate) fn is_whole_turn(&self) -> bool {
         self.turns && (self.step * self.count as f64 - TAU).abs() < 1e-9
     }
