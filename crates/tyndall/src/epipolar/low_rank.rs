@@ -149,7 +149,7 @@ mod tests {
         let factors = LowRank::new(kernel, [0.2, 0.9], [0.5, 2.5], 3);
         let sums = |gamma| factors.sums_at(gamma).collect::<Vec<_>>();
         let (a, b) = (0.77, 1.93);
-        let mut found = vec![DVec3::ZERO; 3];
+        let mut found = [DVec3::ZERO; 3];
         let steps = 1000;
         for k in 0..steps {
             let gamma = a + (b - a) * (f64::from(k) + 0.5) / f64::from(steps);

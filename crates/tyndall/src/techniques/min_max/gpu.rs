@@ -137,14 +137,9 @@ pub(crate) fn passes(
 ) -> Vec<Pass> {
     let grid = grid(params, scope);
     let is_svd = params.integrator == Integrator::Svd;
-    let columns = |grid: &EpipolarGrid| {
-        if is_svd {
-            TINT_COLUMNS
-        } else {
-            grid.samples.max(TINT_COLUMNS)
-        }
-    };
-    let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| grid.uniform(columns(&grid)));
+    let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| {
+        grid.uniform(tint_columns(params, grid.samples))
+    });
     let uniform = scope.uniform("epipolar grid", &epipolar);
     let rank = if is_svd { params.rank } else { 1 };
     let is_spot = matches!(scope.light.emitter, Emitter::Spot { .. });
@@ -198,6 +193,14 @@ pub(crate) fn passes(
     passes
 }
 
+/// Columns of tints a slice of so many samples.
+fn tint_columns(params: &Params, samples: usize) -> usize {
+    match params.integrator {
+        Integrator::Svd => TINT_COLUMNS,
+        Integrator::Analytic => samples.max(TINT_COLUMNS),
+    }
+}
+
 /// Refuses a light whose buffers would be larger than the device binds.
 pub(crate) fn check(
     params: &Params,
@@ -209,13 +212,13 @@ pub(crate) fn check(
     let side = inputs
         .shadow_map
         .map_or(1, |map| map.texture().width().max(map.texture().height()));
-    let samples = params.resolution.samples_of(side as usize) as u32;
+    let samples = params.resolution.samples_of(side as usize);
     let is_svd = params.integrator == Integrator::Svd;
     let is_spot = matches!(light.emitter, Emitter::Spot { .. });
     let grid = EpipolarUniform {
         slices: params.resolution.most_slices() as u32,
-        samples,
-        tint_columns: if is_svd { SVD_COLUMNS as u32 } else { samples },
+        samples: samples as u32,
+        tint_columns: tint_columns(params, samples) as u32,
         ..EpipolarUniform::NONE
     };
     let is_summed = inputs.texture.is_some() || (is_svd && is_spot);
