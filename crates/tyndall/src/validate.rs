@@ -299,7 +299,7 @@ pub(crate) fn technique(frame: &Frame, backend: Backends) -> Checked {
             )));
         }
     }
-    Ok(())
+    frame.technique.check(frame)
 }
 
 impl LightKind {

@@ -2,12 +2,14 @@
 
 mod common;
 
-use common::{SIZE, crowd, stages, steps, technique};
+use common::{
+    SIZE, crowd, epipole_stages, perspective_stages, seam_errors, stages, steps, svd, technique,
+};
 use glam::{DVec3, Vec3};
 use tyndall::{
     camera::CameraRays,
     cpu::{self, CpuInputs},
-    frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase},
+    frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection},
     physics::{
         airlight::{AirlightTable, PointOnRay},
         transmittance::transmittance_integral,
@@ -263,6 +265,74 @@ fn min_max_is_the_reference() {
             // The quadrature's own tolerance of 1e-3.
             assert!(error < 1e-3, "{}, {params:?}: {error}", stage.name);
         }
+    }
+}
+
+/// Every phase function and a medium of many colours are among the stages.
+#[test]
+fn svd_agrees_with_the_closed_forms() {
+    // Terms, and the bound of the error. Largest measured: 0.22, 0.069, 0.0177, 0.0039.
+    let ranks = [(1, 0.3), (2, 0.08), (4, 0.02), (8, 0.005)];
+    let mut worst_of_one = 0.0_f64;
+    for stage in perspective_stages() {
+        let analytic = stage.on_cpu(technique("min-max", &[]));
+        let mut fewer = f64::INFINITY;
+        for (rank, bound) in ranks {
+            let found = stage.on_cpu(svd(rank));
+            let error = compare(&found, &analytic).expect("same size").rel_mae;
+            assert!(error < bound, "{}, {rank}: {error}", stage.name);
+            // Where the terms are exact what is left is the interpolation between samples of the factors.
+            let more_is_better = error <= fewer + 1e-4;
+            assert!(more_is_better, "{}, {rank}: {error} {fewer}", stage.name);
+            fewer = error;
+            worst_of_one = worst_of_one.max(if rank == 1 { error } else { 0.0 });
+        }
+    }
+    // One term is not enough: the integrator is not the analytic one.
+    assert!(worst_of_one > 0.1, "{worst_of_one}");
+}
+
+/// Rays near the epipole are walked, the others go through trees: no seam between them.
+#[test]
+fn no_seam_about_the_epipole() {
+    for (stage, axis) in epipole_stages() {
+        let truth = stage.on_cpu(reference());
+        let errors = seam_errors(&stage, axis, &truth, |t| stage.on_cpu(t));
+        if stage.frame.lights[0].shadow.is_some() {
+            let mut bare = stage.clone();
+            (bare.frame.lights[0].shadow, bare.lights[0].shadow_map) = (None, None);
+            let without = seam_errors(&stage, axis, &truth, |t| bare.on_cpu(t));
+            let seen = without.iter().any(|(_, error)| *error > 1e-3);
+            assert!(seen, "{}: shadows by the seam, {without:?}", stage.name);
+        }
+        for (radius, error) in errors {
+            // Largest measured: 1.6e-9.
+            assert!(error < 1e-6, "{}, {radius}: {error}", stage.name);
+        }
+    }
+}
+
+#[test]
+fn svd_refuses_orthographic_cameras() {
+    let mut stages = stages();
+    stages.retain(|s| matches!(s.frame.camera.projection, Projection::Orthographic { .. }));
+    for stage in stages {
+        let frame = Frame {
+            technique: svd(4),
+            ..stage.frame.clone()
+        };
+        let lights = stage.cpu_lights();
+        let inputs = CpuInputs {
+            size: SIZE,
+            depth: &stage.depth,
+            lights: &lights,
+            occluders: None,
+        };
+        let refused = cpu::render(&frame, &inputs, &|_, _| {}).expect_err("refused");
+        assert_eq!(
+            refused.to_string(),
+            "technique `min-max` cannot do the svd integrator with an orthographic camera"
+        );
     }
 }
 

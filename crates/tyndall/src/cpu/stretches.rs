@@ -21,6 +21,20 @@ pub(crate) fn integrate_lit(
     shades: &mut Vec<Shade>,
 ) -> DVec3 {
     let integral = Integral::new(ray, model, scene, tolerance);
+    sum_lit(ray, model, span, shades, |stretch, tint| {
+        tint * integral.over(stretch)
+    })
+}
+
+/// The sum of what `visit` returns of the stretches of `span` that `shades` leave lit, in which the light is smooth
+/// ([`LightModel::breaks`]), and of the product of the tints that lie on each. Sorts and empties `shades`.
+pub(crate) fn sum_lit(
+    ray: &Ray,
+    model: &LightModel<'_>,
+    span: [f64; 2],
+    shades: &mut Vec<Shade>,
+    visit: impl Fn([f64; 2], DVec3) -> DVec3,
+) -> DVec3 {
     let mut breaks = Vec::new();
     model.breaks(ray.origin, ray.direction, span, &mut breaks);
     breaks.sort_unstable_by(f64::total_cmp);
@@ -30,7 +44,7 @@ pub(crate) fn integrate_lit(
         let within = breaks[first..].iter().copied().take_while(|s| *s < to);
         let mut a = from;
         for b in within.chain([to]) {
-            sum += tint * integral.over([a, b]);
+            sum += visit([a, b], tint);
             a = b;
         }
     });
@@ -95,7 +109,7 @@ fn tinted_stretches(
 }
 
 /// The integral over a lit stretch of a ray.
-struct Integral<'a> {
+pub(crate) struct Integral<'a> {
     ray: &'a Ray,
     model: &'a LightModel<'a>,
     scene: &'a CpuScene<'a>,
@@ -105,7 +119,7 @@ struct Integral<'a> {
 }
 
 impl<'a> Integral<'a> {
-    fn new(
+    pub(crate) fn new(
         ray: &'a Ray,
         model: &'a LightModel<'a>,
         scene: &'a CpuScene<'a>,
@@ -126,7 +140,7 @@ impl<'a> Integral<'a> {
         }
     }
 
-    fn over(&self, [a, b]: [f64; 2]) -> DVec3 {
+    pub(crate) fn over(&self, [a, b]: [f64; 2]) -> DVec3 {
         let optics = &self.scene.optics;
         let f = |s| integrand(self.ray, s, self.model, optics);
         match self.nearest {

@@ -31,7 +31,7 @@ use crate::{
 pub(super) const DEFAULT_SLICES: usize = 1024;
 
 /// View rays nearer to the axis are not decomposed: `SVD_LEAST_SINE` of `svd_stretch.wgsl`.
-const SVD_LEAST_SINE: f64 = 0.1;
+pub(crate) const SVD_LEAST_SINE: f64 = 0.1;
 
 /// A slice's turn about the axis [rad] that the bounds of its cells still hold for.
 const WIDEST_SLICE: f64 = 0.25;
@@ -67,6 +67,8 @@ pub(crate) struct EpipolarGrid {
     /// Range of gamma over which tints are summed.
     tint_range: [f64; 2],
     beta_range: [f64; 2],
+    /// Of the view rays, from start to far plane [m].
+    longest: f64,
 }
 
 /// What of the scene a grid covers.
@@ -99,6 +101,13 @@ pub(crate) struct GridRay {
 pub(crate) fn angle_scale(across: f64, along: f64) -> f64 {
     let share = across / (across + along.abs()).max(1e-300);
     if along >= 0.0 { share } else { 2.0 - share }
+}
+
+impl GridRay {
+    /// A perspective camera's view ray's angle to the axis [rad].
+    pub(crate) fn beta(&self) -> f64 {
+        self.c[1].atan2(self.t[1])
+    }
 }
 
 impl EpipolarGrid {
@@ -160,6 +169,9 @@ impl EpipolarGrid {
             least_off_axis: resolution.epipole_radius * pixel,
             tint_range: [0.0, 1.0],
             beta_range: [0.0, 1.0],
+            longest: picture_grid(scene.size)
+                .map(|(x, y)| camera.ray_to_far(x, y).length)
+                .fold(0.0, f64::max),
         };
         grid.slices = grid.choose_slices(scene, resolution);
         let seen = match local {
@@ -219,6 +231,11 @@ impl EpipolarGrid {
     /// Angles to the axis of a perspective camera's rays whose integrand is decomposed.
     pub(crate) fn beta_range(&self) -> [f64; 2] {
         self.beta_range
+    }
+
+    /// The farthest that light may come from a local light to a perspective camera's eye [m]: by way of the far plane.
+    pub(crate) fn longest_path(&self) -> f64 {
+        2.0 * self.longest + self.local.unwrap_or(0.0)
     }
 
     fn betas_seen(&self, scene: &GridScene<'_>) -> [f64; 2] {
@@ -309,7 +326,7 @@ impl EpipolarGrid {
     }
 
     /// gamma of the view ray's point at distance `s` [m].
-    fn gamma_at(&self, ray: &GridRay, s: f64) -> f64 {
+    pub(crate) fn gamma_at(&self, ray: &GridRay, s: f64) -> f64 {
         let across = ray.c[0] + s * ray.c[1];
         match self.local {
             None => across,
@@ -324,7 +341,11 @@ impl EpipolarGrid {
 
     /// Distance [m] along the view ray where it crosses the border before a sample; infinite where they do not meet.
     pub(crate) fn crossing(&self, ray: &GridRay, sample: usize) -> f64 {
-        let gamma = self.gamma(sample);
+        self.crossing_at(ray, self.gamma(sample))
+    }
+
+    /// Distance [m] along the view ray where it crosses a light ray; infinite where they do not meet.
+    pub(crate) fn crossing_at(&self, ray: &GridRay, gamma: f64) -> f64 {
         if self.local.is_none() {
             return (gamma - ray.c[0]) / ray.c[1];
         }

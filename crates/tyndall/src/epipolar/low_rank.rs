@@ -14,6 +14,8 @@ pub(crate) struct LowRank {
     /// `[i][sample]`: B_i and Gamma_i on the grid.
     beta_factors: Vec<Vec<DVec3>>,
     gamma_factors: Vec<Vec<DVec3>>,
+    /// The integral of each Gamma_i from the first sample to every other.
+    gamma_sums: Vec<Vec<DVec3>>,
 }
 
 #[derive(Clone, Copy)]
@@ -34,12 +36,27 @@ impl Axis {
         self.start + i as f64 * self.step
     }
 
-    /// Linear between samples.
-    fn interpolate(self, samples: &[DVec3], x: f64) -> DVec3 {
+    /// Sample before a place, and how far it lies on the way to the next.
+    fn cell(self, x: f64) -> (usize, f64) {
         let place = (x - self.start) / self.step.max(f64::MIN_POSITIVE);
         let place = place.clamp(0.0, (GRID - 1) as f64);
         let cell = place.floor().min((GRID - 2) as f64);
-        samples[cell as usize].lerp(samples[cell as usize + 1], place - cell)
+        (cell as usize, place - cell)
+    }
+
+    /// Linear between samples.
+    fn interpolate(self, samples: &[DVec3], x: f64) -> DVec3 {
+        let (cell, t) = self.cell(x);
+        samples[cell].lerp(samples[cell + 1], t)
+    }
+
+    /// The integral, from the first sample to every other, of what is linear between them.
+    fn sums(self, samples: &[DVec3]) -> Vec<DVec3> {
+        let mut sums = vec![DVec3::ZERO];
+        for pair in samples.windows(2) {
+            sums.push(sums[sums.len() - 1] + 0.5 * self.step * (pair[0] + pair[1]));
+        }
+        sums
     }
 }
 
@@ -71,6 +88,7 @@ impl LowRank {
         }
         let [beta_factors, gamma_factors] = factors;
         Self {
+            gamma_sums: gamma_factors.iter().map(|g| gamma.sums(g)).collect(),
             beta,
             gamma,
             beta_factors,
@@ -82,14 +100,9 @@ impl LowRank {
     #[cfg(feature = "gpu")]
     pub(crate) fn samples(&self) -> Vec<[f32; 4]> {
         let mut samples = Vec::new();
-        for (betas, gammas) in self.beta_factors.iter().zip(&self.gamma_factors) {
-            let mut sum = DVec3::ZERO;
-            let mut sums = vec![sum];
-            for pair in gammas.windows(2) {
-                sum += 0.5 * self.gamma.step * (pair[0] + pair[1]);
-                sums.push(sum);
-            }
-            let all = betas.iter().chain(gammas).chain(&sums);
+        let gammas = self.gamma_factors.iter().zip(&self.gamma_sums);
+        for (betas, (gammas, sums)) in self.beta_factors.iter().zip(gammas) {
+            let all = betas.iter().chain(gammas).chain(sums);
             samples.extend(all.map(|v| v.extend(0.0).as_vec4().to_array()));
         }
         samples
@@ -115,11 +128,44 @@ impl LowRank {
             .iter()
             .map(move |g| self.gamma.interpolate(g, gamma))
     }
+
+    /// The integral of Gamma_i from the first sample to gamma, for each i.
+    pub(crate) fn sums_at(&self, gamma: f64) -> impl Iterator<Item = DVec3> {
+        let (cell, t) = self.gamma.cell(gamma);
+        let factors = self.gamma_factors.iter().zip(&self.gamma_sums);
+        factors.map(move |(g, sums)| {
+            sums[cell] + self.gamma.step * t * g[cell].lerp(g[cell + 1], 0.5 * t)
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sums_are_integrals() {
+        let kernel = |beta: f64, gamma: f64| DVec3::new(1.0, beta, gamma) * (beta * gamma).cos();
+        let factors = LowRank::new(kernel, [0.2, 0.9], [0.5, 2.5], 3);
+        let sums = |gamma| factors.sums_at(gamma).collect::<Vec<_>>();
+        let (a, b) = (0.77, 1.93);
+        let mut found = [DVec3::ZERO; 3];
+        let steps = 1000;
+        for k in 0..steps {
+            let gamma = a + (b - a) * (f64::from(k) + 0.5) / f64::from(steps);
+            for (sum, gamma) in found.iter_mut().zip(factors.at_gamma(gamma)) {
+                *sum += gamma * (b - a) / f64::from(steps);
+            }
+        }
+        for ((found, to), from) in found.iter().zip(sums(b)).zip(sums(a)) {
+            // Measured: 2.3e-7.
+            let error = (*found - (to - from)).abs().max_element();
+            assert!(error < 1e-6, "{error}");
+        }
+        // Beyond the samples there is nothing.
+        assert_eq!(sums(0.1), vec![DVec3::ZERO; 3]);
+        assert_eq!(sums(9.0), sums(2.5));
+    }
 
     #[test]
     fn four_terms_hold_an_attenuation() {

@@ -223,14 +223,12 @@ impl<'a> LightModel<'a> {
 
     /// The light that arrives at a point if nothing blocks it.
     pub fn incident(&self, point: DVec3, optics: &Optics) -> Incident {
-        let tint = self.texture.map_or(DVec3::ONE, |(mapping, picture)| {
-            picture.sample(mapping.uv(point))
-        });
+        let irradiance = self.color * self.picture_at(point);
         let position = match self.shape {
             Shape::Parallel { direction } => {
                 return Incident {
                     direction,
-                    irradiance: self.color * tint,
+                    irradiance,
                 };
             }
             Shape::Point { position }
@@ -241,7 +239,28 @@ impl<'a> LightModel<'a> {
         let distance2 = offset.length_squared().max(LIGHT_RADIUS * LIGHT_RADIUS);
         let distance = distance2.sqrt();
         let direction = offset / distance;
-        let falloff = match self.shape {
+        let falloff = self.falloff(direction);
+        Incident {
+            direction,
+            irradiance: irradiance * optics.transmittance(distance) * (falloff / distance2),
+        }
+    }
+
+    /// What the light ray through a point is dimmed by on its whole length: picture and cone.
+    pub(crate) fn ray_tint(&self, point: DVec3) -> DVec3 {
+        let from_light = self.position().map_or(DVec3::ZERO, |p| point - p);
+        self.picture_at(point) * self.falloff(from_light.normalize_or_zero())
+    }
+
+    fn picture_at(&self, point: DVec3) -> DVec3 {
+        self.texture.map_or(DVec3::ONE, |(mapping, picture)| {
+            picture.sample(mapping.uv(point))
+        })
+    }
+
+    /// Of light that leaves a local light this way (unit length).
+    fn falloff(&self, direction: DVec3) -> f64 {
+        match self.shape {
             Shape::Spot {
                 axis,
                 cos_inner,
@@ -250,10 +269,6 @@ impl<'a> LightModel<'a> {
             } => spot_falloff(direction.dot(axis), cos_inner, cos_outer),
             Shape::Patch { normal, .. } => direction.dot(normal).max(0.0),
             Shape::Parallel { .. } | Shape::Point { .. } => 1.0,
-        };
-        Incident {
-            direction,
-            irradiance: self.color * tint * optics.transmittance(distance) * (falloff / distance2),
         }
     }
 }

@@ -8,7 +8,7 @@ mod params;
 pub mod ray_march;
 pub mod reference;
 
-use crate::{cpu::CpuScene, error::PrepareError};
+use crate::{cpu::CpuScene, error::PrepareError, frame::Frame};
 use params::Parameters;
 #[cfg(feature = "gpu")]
 use {
@@ -158,6 +158,14 @@ impl Technique {
             Self::Incremental(p) => p.set(key, value),
             Self::LightVolume(p) => p.set(key, value),
             Self::Epipolar(p) => p.set(key, value),
+        }
+    }
+
+    /// Checks what its parameters ask of a frame, on any backend.
+    pub(crate) fn check(&self, frame: &Frame) -> Result<(), PrepareError> {
+        match self {
+            Self::MinMax(p) => min_max::svd::check(p, &frame.camera),
+            _ => Ok(()),
         }
     }
 

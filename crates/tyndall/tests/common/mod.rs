@@ -2,8 +2,11 @@
 //! every kind of light, medium and camera.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+use std::ops::Range;
+
 use glam::{Mat4, Vec3};
 use tyndall::{
+    camera::CameraRays,
     cpu::{self, CpuInputs, CpuLightInputs, GlassMap, LightTexture, ShadowMap},
     frame::{
         Camera, DepthRange, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection,
@@ -11,7 +14,7 @@ use tyndall::{
     },
     techniques::{Technique, Value},
 };
-use tyndall_testkit::picture::Picture;
+use tyndall_testkit::{metrics::compare, picture::Picture};
 
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
@@ -56,6 +59,12 @@ pub(crate) fn technique(name: &str, params: &[(&str, Value)]) -> Technique {
 
 pub(crate) fn steps(n: i64) -> (&'static str, Value) {
     ("steps", Value::Integer(n))
+}
+
+/// `min-max` with the svd integrator.
+pub(crate) fn svd(rank: i64) -> Technique {
+    let integrator = ("integrator", Value::Word("svd".into()));
+    technique("min-max", &[integrator, ("rank", Value::Integer(rank))])
 }
 
 impl Stage {
@@ -372,6 +381,84 @@ pub(crate) fn stages() -> Vec<Stage> {
         }
     }
     stages
+}
+
+/// The stages whose camera has an eye.
+pub(crate) fn perspective_stages() -> Vec<Stage> {
+    let mut stages = stages();
+    stages.retain(|s| matches!(s.frame.camera.projection, Projection::Perspective { .. }));
+    stages
+}
+
+/// Lights that shine into the camera: stages with their epipole within the picture, and the way to it.
+pub(crate) fn epipole_stages() -> Vec<(Stage, Vec3)> {
+    let mut stages = stages();
+    stages.retain(|s| s.name.contains("; towards the light; ") && s.lights[0].texture.is_none());
+    let place = |mut stage: Stage| {
+        let camera = &mut stage.frame.camera;
+        let eye = Vec3::from_array(camera.eye);
+        let axis = match stage.frame.lights[0].emitter {
+            Emitter::Directional { direction, .. } => -Vec3::from_array(direction),
+            _ => LIGHT - eye,
+        }
+        .normalize();
+        // Beside the middle, between pixels.
+        camera.forward = (axis + Vec3::new(0.11, 0.07, 0.03)).to_array();
+        (stage, axis)
+    };
+    stages.into_iter().map(place).collect()
+}
+
+/// Distance of every pixel from the epipole [pixels], as its sine to the axis.
+pub(crate) fn off_axis(stage: &Stage, axis: Vec3) -> Vec<f64> {
+    let rays = CameraRays::new(&stage.frame.camera, SIZE);
+    let axis = axis.as_dvec3();
+    let sine = |i: u32| {
+        let ray = rays.ray(i % SIZE[0], i / SIZE[0], stage.depth[i as usize]);
+        ray.direction.cross(axis).length()
+    };
+    // A view of one radian from top to bottom.
+    let pixel = 2.0 * 0.5_f64.tan() / f64::from(SIZE[1]);
+    (0..SIZE[0] * SIZE[1]).map(|i| sine(i) / pixel).collect()
+}
+
+/// The error of the pixels whose distances are within a range; `None` where there are none.
+fn error_within(
+    found: &Picture,
+    truth: &Picture,
+    distances: &[f64],
+    range: &Range<f64>,
+) -> Option<f64> {
+    let [found, truth] = [found, truth].map(|picture| {
+        let pixels = picture.pixels().iter().zip(distances);
+        let within = pixels.filter(|(_, d)| range.contains(d)).map(|(p, _)| *p);
+        let within: Vec<[f64; 3]> = within.collect();
+        Picture::new([within.len(), 1], within).ok()
+    });
+    Some(compare(&found?, &truth?).expect("same size").rel_mae)
+}
+
+/// Errors of `min-max` on either side of the border of the rays that are walked, three pixels wide, for some radii of it.
+pub(crate) fn seam_errors(
+    stage: &Stage,
+    axis: Vec3,
+    truth: &Picture,
+    render: impl Fn(Technique) -> Picture,
+) -> Vec<(i64, f64)> {
+    let distances = off_axis(stage, axis);
+    let mut errors = Vec::new();
+    for radius in [0_i64, 2, 8] {
+        let found = render(technique(
+            "min-max",
+            &[("epipole_radius", Value::Real(radius as f64))],
+        ));
+        let border = radius as f64;
+        for range in [border - 3.0..border, border..border + 3.0] {
+            let error = error_within(&found, truth, &distances, &range);
+            errors.extend(error.map(|error| (radius, error)));
+        }
+    }
+    errors
 }
 
 /// A stage of all lights at once.

@@ -1,21 +1,29 @@
-//! The CPU side: rectify and build trees once a light, then traverse ray by ray.
+//! The CPU side: rectify, build trees and decompose once a light, then traverse ray by ray.
 
 use glam::DVec3;
 
-use super::Params;
+use super::{
+    Integrator, Params,
+    svd::{self, SvdRay},
+};
 use crate::{
     camera::Ray,
-    cpu::{CpuLight, CpuScene, RayIntegrator, Shade, stretches::integrate_lit},
+    cpu::{
+        CpuLight, CpuScene, RayIntegrator, Shade,
+        stretches::{Integral, sum_lit},
+    },
     epipolar::{
         cells,
         grid::{EpipolarGrid, GridRay, GridScene},
+        low_rank::LowRank,
         tree::{MinMaxTree, Run},
     },
+    light::LightModel,
     shadow::walk::RayOnMap,
 };
 
 /// Relative error of the quadrature of a lit stretch, where it has no closed form.
-const TOLERANCE: f64 = 1e-3;
+pub(super) const TOLERANCE: f64 = 1e-3;
 
 pub(crate) fn integrator<'a>(
     params: &'a Params,
@@ -34,10 +42,13 @@ struct MinMax<'a> {
     forests: Vec<Option<Forest>>,
 }
 
-/// A light's slices, and a tree over each.
+/// A light's slices.
 struct Forest {
     grid: EpipolarGrid,
+    /// One a slice; none where nothing casts shadows.
     trees: Vec<MinMaxTree>,
+    /// Of the svd integrator.
+    factors: Option<LowRank>,
 }
 
 impl RayIntegrator for MinMax<'_> {
@@ -48,9 +59,10 @@ impl RayIntegrator for MinMax<'_> {
             for model in &light.models {
                 let span = model.reach(ray.origin, ray.direction, [0.0, ray.length]);
                 if span[0] < span[1] {
+                    let place = forest.as_ref().and_then(|f| Some((f, f.grid.ray(ray)?)));
                     shades.clear();
-                    find_shades(ray, light, forest.as_ref(), span, &mut shades);
-                    sum += integrate_lit(ray, model, self.scene, TOLERANCE, span, &mut shades);
+                    find_shades(ray, light, place, span, &mut shades);
+                    sum += self.integrate(ray, model, place, span, &mut shades);
                 }
             }
         }
@@ -58,10 +70,32 @@ impl RayIntegrator for MinMax<'_> {
     }
 }
 
+impl MinMax<'_> {
+    fn integrate(
+        &self,
+        ray: &Ray,
+        model: &LightModel<'_>,
+        place: Option<(&Forest, GridRay)>,
+        span: [f64; 2],
+        shades: &mut Vec<Shade>,
+    ) -> DVec3 {
+        let analytic = Integral::new(ray, model, self.scene, TOLERANCE);
+        let svd = place.and_then(|(forest, place)| {
+            let factors = forest.factors.as_ref()?;
+            SvdRay::new(ray, model, &self.scene.optics, &forest.grid, place, factors)
+        });
+        sum_lit(ray, model, span, shades, |stretch, tint| match &svd {
+            // Behind coloured glass a stretch is a texel long.
+            Some(svd) if tint == DVec3::ONE => svd.over(stretch),
+            _ => tint * analytic.over(stretch),
+        })
+    }
+}
+
 fn find_shades(
     ray: &Ray,
     light: &CpuLight<'_>,
-    forest: Option<&Forest>,
+    place: Option<(&Forest, GridRay)>,
     span: [f64; 2],
     shades: &mut Vec<Shade>,
 ) {
@@ -69,7 +103,7 @@ fn find_shades(
         return;
     };
     let on_map = shadows.on_map(ray.origin, ray.direction, span);
-    match forest.and_then(|f| Some((f, f.grid.ray(ray)?))) {
+    match place {
         Some((forest, place)) => forest.traverse(&place, span, &on_map, shades),
         None => on_map.walk_depth(span, shades),
     }
@@ -79,18 +113,26 @@ fn find_shades(
 impl Forest {
     /// `None` where there are no slices.
     fn new(params: &Params, scene: &CpuScene<'_>, light: &CpuLight<'_>) -> Option<Self> {
-        let (model, shadows) = (light.models.first()?, light.shadows.as_ref()?);
+        let is_svd = params.integrator == Integrator::Svd;
+        let (model, shadows) = (light.models.first()?, light.shadows.as_ref());
+        if shadows.is_none() && !is_svd {
+            return None;
+        }
         let grid = GridScene {
             camera: &scene.camera,
             size: scene.size,
             light: model.source(),
             cone: model.cone(),
-            faces: shadows.faces(),
-            side: shadows.side() as usize,
+            faces: shadows.map_or(&[], |s| s.faces()),
+            side: shadows.map_or(1, |s| s.side() as usize),
         };
         let grid = EpipolarGrid::new(&grid, &params.resolution)?;
-        let trees = cells::trees(&grid, shadows);
-        Some(Self { grid, trees })
+        let factors = is_svd.then(|| svd::factors(&grid, &scene.optics, params.rank as usize));
+        Some(Self {
+            grid,
+            trees: shadows.map_or_else(Vec::new, |s| cells::trees(&grid, s)),
+            factors,
+        })
     }
 
     /// Appends the stretches of a view ray that are in shadow. What leaves cannot tell is walked, and so is what comes

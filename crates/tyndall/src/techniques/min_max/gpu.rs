@@ -43,8 +43,9 @@ const SVD: &str = include_str!("svd.wgsl");
 const SVD_STRETCH: &str = include_str!("svd_stretch.wgsl");
 const GLASS: &str = include_str!("glass.wgsl");
 
-/// Columns of tints a slice of the svd integrator, whose rows are as many as its terms (Chen 2011, section 4.3).
-const SVD_COLUMNS: usize = 512;
+/// Columns of tints a slice: those of the svd integrator, whose rows are as many as its terms (Chen 2011, section 4.3),
+/// and the least of the analytic one, for a coarse shadow map may go with a fine picture.
+const TINT_COLUMNS: usize = 512;
 
 /// `Svd` of `svd.wgsl`.
 #[repr(C)]
@@ -136,8 +137,9 @@ pub(crate) fn passes(
 ) -> Vec<Pass> {
     let grid = grid(params, scope);
     let is_svd = params.integrator == Integrator::Svd;
-    let columns = |grid: &EpipolarGrid| if is_svd { SVD_COLUMNS } else { grid.samples };
-    let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| grid.uniform(columns(&grid)));
+    let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| {
+        grid.uniform(tint_columns(params, grid.samples))
+    });
     let uniform = scope.uniform("epipolar grid", &epipolar);
     let rank = if is_svd { params.rank } else { 1 };
     let is_spot = matches!(scope.light.emitter, Emitter::Spot { .. });
@@ -191,6 +193,14 @@ pub(crate) fn passes(
     passes
 }
 
+/// Columns of tints a slice of so many samples.
+fn tint_columns(params: &Params, samples: usize) -> usize {
+    match params.integrator {
+        Integrator::Svd => TINT_COLUMNS,
+        Integrator::Analytic => samples.max(TINT_COLUMNS),
+    }
+}
+
 /// Refuses a light whose buffers would be larger than the device binds.
 pub(crate) fn check(
     params: &Params,
@@ -202,13 +212,13 @@ pub(crate) fn check(
     let side = inputs
         .shadow_map
         .map_or(1, |map| map.texture().width().max(map.texture().height()));
-    let samples = params.resolution.samples_of(side as usize) as u32;
+    let samples = params.resolution.samples_of(side as usize);
     let is_svd = params.integrator == Integrator::Svd;
     let is_spot = matches!(light.emitter, Emitter::Spot { .. });
     let grid = EpipolarUniform {
         slices: params.resolution.most_slices() as u32,
-        samples,
-        tint_columns: if is_svd { SVD_COLUMNS as u32 } else { samples },
+        samples: samples as u32,
+        tint_columns: tint_columns(params, samples) as u32,
         ..EpipolarUniform::NONE
     };
     let is_summed = inputs.texture.is_some() || (is_svd && is_spot);
