@@ -181,7 +181,7 @@ fn shadows_are_there_wherever_the_epipole_is() {
     let mut worst = (0.0, String::new());
     for pose in poses(10, &["sun;", "lamp;", "spot;"])
         .into_iter()
-        .step_by(3)
+        .step_by(5)
     {
         let found = on::on_gpu(gpu, effect, &pose, small());
         let marched = on::on_gpu(gpu, effect, &pose, march.clone());
@@ -204,7 +204,7 @@ fn no_seams_are_there_wherever_the_epipole_is() {
     let equiangular = ("spacing", Value::Word("equiangular".into()));
     let march = technique("ray-march", &[steps(128), equiangular]);
     let mut worst = (0.0, String::new());
-    for mut pose in poses(30, &["sun;", "lamp;"]).into_iter().step_by(3) {
+    for mut pose in poses(30, &["sun;", "lamp;"]).into_iter().step_by(5) {
         if let Some(map) = &mut pose.lights[0].shadow_map {
             map.depth.fill(0.0);
         }

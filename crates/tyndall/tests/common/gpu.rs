@@ -8,7 +8,10 @@ use tyndall::{
     frame::{Frame, ShadowProjection},
     techniques::Technique,
 };
-use tyndall_testkit::{device::TestDevice, picture::Picture};
+use tyndall_testkit::{
+    device::{TestDevice, device},
+    picture::Picture,
+};
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use super::{SIZE, Stage, StageLight, picture};
@@ -233,8 +236,14 @@ fn depth_texture(gpu: &TestDevice, size: [u32; 2], layers: u32, values: &[f32]) 
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
         ..descriptor(format, size, layers)
     });
+    // Made once for the device that most tests share; pipelines of one device are nothing to another.
     static WRITER: OnceLock<wgpu::RenderPipeline> = OnceLock::new();
-    let pipeline = WRITER.get_or_init(|| depth_writer(gpu, format));
+    let is_shared = device().is_ok_and(|shared| std::ptr::eq(shared, gpu));
+    let pipeline = if is_shared {
+        WRITER.get_or_init(|| depth_writer(gpu, format)).clone()
+    } else {
+        depth_writer(gpu, format)
+    };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     for (layer, values) in values.chunks((size[0] * size[1]) as usize).enumerate() {
         let source = upload(
@@ -271,7 +280,7 @@ fn depth_texture(gpu: &TestDevice, size: [u32; 2], layers: u32, values: &[f32]) 
             }),
             ..Default::default()
         });
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
     }
