@@ -78,7 +78,8 @@ pub struct LightInputs<'a> {
     /// The shadow map: a depth texture viewed as a 2-D array of 1 layer, or of 6 for a cube.
     pub shadow_map: Option<&'a wgpu::TextureView>,
     /// Coloured glass: an `Rg32Uint` 2-D array, layer `face * layers + layer`; a texel is the layer's depth in the
-    /// shadow map's convention as the bits of an f32, and its tint as three 10-bit square roots (red lowest).
+    /// shadow map's convention as the bits of an f32, and its tint as three 10-bit square roots (red lowest). Layers come
+    /// nearest to the light first, empty ones last.
     pub glass: Option<&'a wgpu::TextureView>,
     /// The light's texture: 2-D, filterable, linear when read.
     pub texture: Option<&'a wgpu::TextureView>,

@@ -17,7 +17,7 @@
 //! | name | what it is | lights | runs on |
 //! |---|---|---|---|
 //! | [`ray-march`](techniques::ray_march) | brute force: N steps a ray, each looked up in the shadow map | directional, point, spot | GPU, CPU |
-//! | [`min-max`](techniques::min_max) | 1-D min-max mipmaps over epipolar slices, lit stretches in closed form | directional, point, spot | CPU |
+//! | [`min-max`](techniques::min_max) | 1-D min-max mipmaps over epipolar slices, lit stretches in closed form | directional, point, spot | GPU, CPU |
 //! | [`light-volume`](techniques::light_volume) | the shadow map as a closed mesh, drawn additively with signed airlight | directional, point, spot, without textures | GPU |
 //! | [`epipolar`](techniques::epipolar_sampling) | few rays marched along epipolar lines with 1-D min/max trees, the rest interpolated | directional, point, spot | GPU |
 //! | [`incremental`](techniques::incremental) | partial sums over epipolar slices, rays in order of their angle | directional, point, without textures | CPU |

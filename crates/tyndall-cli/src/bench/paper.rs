@@ -13,7 +13,7 @@ use crate::{
     failure::Failure,
     measure::{
         Budget, EqualQuality, PictureError, Stage, Timing, Timings, Visibility, equal_quality,
-        error_at, error_of, ray_march, steps_in_time, timed_marches,
+        error_at, error_of, ray_march, steps_in_time, time_of_steps, timed_marches,
     },
     picture::Picture,
     progress::Stages,
@@ -46,7 +46,7 @@ const BUDGET: Budget = Budget {
     time: Duration::from_secs(8),
 };
 
-const QUALITY_COLUMNS: [&str; 14] = [
+const QUALITY_COLUMNS: [&str; 15] = [
     "technique",
     "on",
     "ms",
@@ -59,6 +59,7 @@ const QUALITY_COLUMNS: [&str; 14] = [
     "equal-quality steps",
     "their ms",
     "speed-up",
+    "by the line",
     "equal-time steps",
     "their relMAE",
 ];
@@ -225,16 +226,22 @@ fn quality_row(
         .timed_steps()
         .and_then(|steps| time_of(timings, &ray_march(steps)));
     let speed_up = march.map(|march| march.total().median / total.median);
-    let same_time = match (
-        quality.equal,
-        timed_marches().map(|march| time_of(timings, &march)),
-    ) {
-        (Some(_), [Some(few), Some(many)]) => {
-            let steps = steps_in_time(total.median, [few, many].map(|t| t.total().median));
-            Some((steps, error_at(small, steps, truth)?.rel_mae))
-        }
+    let line = match timed_marches().map(|march| time_of(timings, &march)) {
+        [Some(few), Some(many)] => Some([few, many].map(|t| t.total().median)),
         _ => None,
     };
+    let compared = quality.equal.zip(line);
+    let same_time = compared
+        .map(|(_, line)| {
+            let steps = steps_in_time(total.median, line);
+            error_at(small, steps, truth).map(|error| (steps, error.rel_mae))
+        })
+        .transpose()?;
+    let by_the_line = compared.map(|(equal, line)| {
+        let ratio = time_of_steps(equal.steps, line) / total.median;
+        let bound = if equal.reached { "" } else { "> " };
+        Cell::Text(format!("{bound}{ratio:.1}"))
+    });
     let at_least = |text: String| {
         Cell::Text(if quality.is_equal() {
             text
@@ -257,6 +264,7 @@ fn quality_row(
             at_least(Cell::Time(march.total()).to_string())
         }),
         speed_up.map_or(Cell::Empty, |ratio| at_least(format!("{:.2}", ratio))),
+        by_the_line.unwrap_or(Cell::Empty),
         same_time.map_or(Cell::Empty, |(steps, _)| Cell::Count(steps.into())),
         same_time.map(|(_, error)| error).into(),
     ])

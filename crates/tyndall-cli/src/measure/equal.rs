@@ -105,6 +105,12 @@ pub fn timed_marches() -> [Technique; 2] {
     TIMED_STEPS.map(ray_march)
 }
 
+/// The time of a march [ms], where the [`timed_marches`] took `few` and `many` [ms].
+pub fn time_of_steps(steps: u32, [few, many]: [f64; 2]) -> f64 {
+    let [n_few, n_many] = TIMED_STEPS.map(f64::from);
+    few + (many - few) / (n_many - n_few) * (f64::from(steps) - n_few)
+}
+
 /// The step count that takes `milliseconds`, where the [`timed_marches`] took `few` and `many` [ms].
 pub fn steps_in_time(milliseconds: f64, [few, many]: [f64; 2]) -> u32 {
     let [n_few, n_many] = TIMED_STEPS.map(f64::from);
@@ -179,6 +185,7 @@ mod tests {
         for steps in [1, 8, 40, 64, 1000] {
             // Half a step more, so that rounding cannot take one away.
             assert_eq!(steps_in_time(time(f64::from(steps) + 0.5), points), steps);
+            assert!((time_of_steps(steps, points) - time(f64::from(steps))).abs() < 1e-9);
         }
         assert_eq!(steps_in_time(0.0, points), 1);
         assert_eq!(steps_in_time(1e9, points), MAX_STEPS);

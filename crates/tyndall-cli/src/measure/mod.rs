@@ -17,7 +17,7 @@ pub(crate) mod tests;
 
 pub use equal::{
     EqualQuality, EqualTime, MAX_STEPS, equal_quality, equal_time, error_at, ray_march,
-    steps_in_time, timed_marches,
+    steps_in_time, time_of_steps, timed_marches,
 };
 pub use error::error_of;
 pub use stage::{Place, Stage, converged};

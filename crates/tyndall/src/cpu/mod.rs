@@ -51,7 +51,7 @@ pub struct ShadowMap {
     pub depth: Vec<f32>,
 }
 
-/// Coloured glass seen from the light: some layers, nearest to the light first, on the texels of the shadow map's faces.
+/// Coloured glass seen from the light: some layers, nearest to the light first and empty ones last, on the texels of the shadow map's faces.
 ///
 /// A point is tinted by every layer that lies between it and the light. Clear glass (tint 1) needs no layer.
 #[derive(Clone, Debug, PartialEq)]
