@@ -381,6 +381,20 @@ fn what_cannot_be_made_is_refused() {
         refused.expect_err("no eye").to_string(),
         "technique `min-max` cannot do the svd integrator with an orthographic camera"
     );
+    let most = Value::Integer(16384);
+    let fine = tyndall::frame::Frame {
+        technique: technique("min-max", &[("slices", most.clone()), ("samples", most)]),
+        ..stage.frame.clone()
+    };
+    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &fine);
+    let limit = gpu.device.limits().max_storage_buffer_binding_size;
+    assert_eq!(
+        refused.expect_err("2 GiB of nodes").to_string(),
+        format!(
+            "slices x samples of technique `min-max` (lights[0]): 2147483648 bytes are more than the device's \
+             max_storage_buffer_binding_size, {limit}"
+        )
+    );
     let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame);
     assert_eq!(
         refused.expect_err("a light through a picture").to_string(),
