@@ -61,8 +61,9 @@
 //!
 //! Slices x samples cells, some texels of the pyramid each; then some nodes a border between light and shadow, and
 //! some texels an undecided leaf. The GPU draws the pyramid of the map, rectifies and builds the trees in one dispatch,
-//! sums up pictures where there are any, and traverses: one full-screen pass. On the CPU, of a church through whose windows the sun shines, 640 x 480 pixels and a
-//! 4096^2 map: 256 slices take three times as long as 1024, and 4096 take 1.7 times as long.
+//! sums up pictures where there are any, and traverses: one full-screen pass. On the CPU, of a church through whose
+//! windows the sun shines, 640 x 480 pixels and a 4096^2 map: 256 slices take three times as long as 1024, and 4096 take
+//! 1.7 times as long.
 //!
 //! # What was tried
 //!
@@ -78,7 +79,9 @@
 //! # Where it fails
 //!
 //! Cells that span two faces of a cube are not decided; shadows as fine as the map's texels leave few
-//! leaves decided, and the technique is then a walk with a detour.
+//! leaves decided, and the technique is then a walk with a detour: in a forest at 1280 x 960 pixels and a 4096^2 map a
+//! ray visits 191 nodes and 577 texels (242 and 285 with 4096 x 4096 cells), and a frame takes as long as some 1600
+//! steps of marching, against 100 in a church.
 
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
