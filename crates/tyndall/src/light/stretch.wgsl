@@ -74,7 +74,8 @@ fn stretch_quadrature(ray: Ray, stretch: vec2f) -> vec3f {
     // cos(angle to the axis) = (cos xi, sin xi) . axis
     let axis = vec2f(dot(nearest, light.direction) / place.height, dot(ray.direction, light.direction));
     let xi = atan((stretch - place.projection) / place.height);
-    let panels = ceil((xi.y - xi.x) / STRETCH_PANEL);
+    // A stretch may be too short for its angles to differ.
+    let panels = max(ceil((xi.y - xi.x) / STRETCH_PANEL), 1.0);
     let half = 0.5 * (xi.y - xi.x) / panels;
     var sum = vec3f(0.0);
     for (var i = 0.0; i < panels; i += 1.0) {
