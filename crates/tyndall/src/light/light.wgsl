@@ -110,3 +110,11 @@ fn light_reach(ray: Ray) -> vec2f {
     }
     return light_cone_interval(ray.origin - light.position, ray.direction, light.direction, light.cos_outer, all);
 }
+
+// The factor that all of a view ray's light shares: of the sun, strength and scattering.
+fn light_common(ray: Ray) -> vec3f {
+    if light_is_local() {
+        return vec3f(1.0);
+    }
+    return medium_scattering(-dot(light.direction, ray.direction)) * light.color;
+}

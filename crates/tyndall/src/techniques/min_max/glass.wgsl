@@ -4,12 +4,10 @@
 // The light of a lit stretch, but for the common factor.
 fn glass_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
     let e = epipolar;
-    let ends = (vec2f(epipolar_gamma(view.place, a), epipolar_gamma(view.place, b)) - e.gamma_start) / e.gamma_step;
-    let leaves = select(0.0, f32(e.samples), view.has_leaves);
-    let first = u32(clamp(ceil(ends.x), 0.0, leaves));
-    let end_leaf = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
+    let leaves = traverse_leaves(view.place, view.has_leaves, vec2f(a, b));
+    let end_leaf = leaves.y;
     var level = 0u;
-    var index = first;
+    var index = leaves.x;
     // What no leaf holds whole may be behind glass.
     var tinted = true;
     var start = a;
@@ -33,8 +31,8 @@ fn glass_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
             }
         }
         let leaf = min(index << level, end_leaf);
-        let is_last = leaf >= end_leaf;
-        let stop = clamp(select(traverse_leaf(view, leaf), b, is_last && (tinted || ends.y <= f32(end_leaf))), start, b);
+        let is_last = tinted && leaf >= end_leaf;
+        let stop = clamp(select(traverse_leaf(view, leaf), b, is_last), start, b);
         sum += glass_walk(view, start, select(start, stop, tinted));
         sum += traverse_clear(view, start, select(stop, start, tinted));
         start = stop;

@@ -141,10 +141,8 @@ pub(crate) fn passes(
         grid.uniform(tint_columns(params, grid.samples))
     });
     let uniform = scope.uniform("epipolar grid", &epipolar);
-    let rank = if is_svd { params.rank } else { 1 };
-    let is_spot = matches!(scope.light.emitter, Emitter::Spot { .. });
-    let is_summed = scope.inputs.texture.is_some() || (is_svd && is_spot);
-    let bytes = Bytes::new(&epipolar, &scope.inputs, is_summed.then_some(rank));
+    let rows = tint_rows(params, scope.light, &scope.inputs);
+    let bytes = Bytes::new(&epipolar, &scope.inputs, rows);
     let (svd, svd_factors) = svd(scope, grid.as_ref().filter(|_| is_svd), params.rank);
     let nodes = scope.storage("min-max nodes", bytes.nodes);
     let tint_sums = scope.storage("tint sums", bytes.tint_sums);
@@ -164,11 +162,11 @@ pub(crate) fn passes(
                 ));
             }
         }
-        if is_summed {
+        if let Some(rows) = rows {
             let resources =
                 [&uniform, &svd, &svd_factors, &tint_sums].map(|b| b.as_entire_binding());
             let program = &programs.tint_rows[usize::from(is_svd)];
-            let groups = [epipolar.slices, rank, 1];
+            let groups = [epipolar.slices, rows, 1];
             passes.push(scope.compute(program, "sum up picture", &resources, groups));
         }
     }
@@ -201,6 +199,18 @@ fn tint_columns(params: &Params, samples: usize) -> usize {
     }
 }
 
+/// Rows of tints a slice, where there are any: one, or one a term of the svd integrator, which sums up cones, too.
+fn tint_rows(params: &Params, light: &Light, inputs: &LightInputs<'_>) -> Option<u32> {
+    let has_picture = inputs.texture.is_some();
+    match params.integrator {
+        Integrator::Analytic => has_picture.then_some(1),
+        Integrator::Svd => {
+            let has_cone = matches!(light.emitter, Emitter::Spot { .. });
+            (has_picture || has_cone).then_some(params.rank)
+        }
+    }
+}
+
 /// Refuses a light whose buffers would be larger than the device binds.
 pub(crate) fn check(
     params: &Params,
@@ -213,17 +223,13 @@ pub(crate) fn check(
         .shadow_map
         .map_or(1, |map| map.texture().width().max(map.texture().height()));
     let samples = params.resolution.samples_of(side as usize);
-    let is_svd = params.integrator == Integrator::Svd;
-    let is_spot = matches!(light.emitter, Emitter::Spot { .. });
     let grid = EpipolarUniform {
         slices: params.resolution.most_slices() as u32,
         samples: samples as u32,
         tint_columns: tint_columns(params, samples) as u32,
         ..EpipolarUniform::NONE
     };
-    let is_summed = inputs.texture.is_some() || (is_svd && is_spot);
-    let rank = if is_svd { params.rank } else { 1 };
-    let bytes = Bytes::new(&grid, inputs, is_summed.then_some(rank));
+    let bytes = Bytes::new(&grid, inputs, tint_rows(params, light, inputs));
     let limit = limits.max_storage_buffer_binding_size;
     for (what, needed) in [
         ("slices x samples", bytes.nodes),
@@ -303,8 +309,8 @@ struct Bytes {
 }
 
 impl Bytes {
-    /// `sums` is the number of rows of tints a slice.
-    fn new(grid: &EpipolarUniform, inputs: &LightInputs<'_>, sums: Option<u32>) -> Self {
+    /// `rows` is the number of rows of tints a slice.
+    fn new(grid: &EpipolarUniform, inputs: &LightInputs<'_>, rows: Option<u32>) -> Self {
         let slices = u64::from(grid.slices);
         let if_used = |used: bool, bytes: u64| if used { bytes } else { 16 };
         // Two 16-bit numbers a node, twice as many nodes as leaves.
@@ -312,7 +318,7 @@ impl Bytes {
         let columns = u64::from(grid.tint_columns) + 1;
         Self {
             nodes: if_used(inputs.shadow_map.is_some(), nodes),
-            tint_sums: sums.map_or(16, |rows| 16 * slices * columns * u64::from(rows)),
+            tint_sums: rows.map_or(16, |rows| 16 * slices * columns * u64::from(rows)),
             glass_nodes: if_used(inputs.glass.is_some(), nodes),
         }
     }

@@ -57,16 +57,22 @@ fn traverse(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return vec4f(before + traverse_light(ray), dot(left, vec3f(1.0 / 3.0)));
 }
 
-// Of a ray that the light reaches over a span.
-fn traverse_view(ray: Ray, span: vec2f) -> TraverseRay {
-    let place = epipolar_ray(epipolar, ray);
-    let has_leaves = SHADOW_KIND != SHADOW_NONE && place.off_axis > epipolar.least_off_axis;
+// The leaves that lie wholly within a span: the first, and one past the last.
+fn traverse_leaves(place: EpipolarRay, has_leaves: bool, span: vec2f) -> vec2u {
     let leaves = select(0.0, f32(epipolar.samples), has_leaves);
     let gammas = vec2f(epipolar_gamma(place, span.x), epipolar_gamma(place, span.y));
     let ends = (gammas - epipolar.gamma_start) / epipolar.gamma_step;
     let first = u32(clamp(ceil(ends.x), 0.0, leaves));
-    let last = max(first, u32(clamp(floor(ends.y), 0.0, leaves)));
-    return TraverseRay(ray, span, place, epipolar_slice(epipolar, place), has_leaves, first, last, shadow_ray(ray));
+    return vec2u(first, max(first, u32(clamp(floor(ends.y), 0.0, leaves))));
+}
+
+// Of a ray that the light reaches over a span.
+fn traverse_view(ray: Ray, span: vec2f) -> TraverseRay {
+    let place = epipolar_ray(epipolar, ray);
+    let has_leaves = SHADOW_KIND != SHADOW_NONE && place.off_axis > epipolar.least_off_axis;
+    let leaves = traverse_leaves(place, has_leaves, span);
+    let slice = epipolar_slice(epipolar, place);
+    return TraverseRay(ray, span, place, slice, has_leaves, leaves.x, leaves.y, shadow_ray(ray));
 }
 
 // What comes before the first leaf is walked.
@@ -107,7 +113,7 @@ fn traverse_light(ray: Ray) -> vec3f {
             break;
         }
     }
-    return sum * traverse_common(ray);
+    return sum * light_common(ray);
 }
 
 // Distance where a leaf begins.
@@ -229,12 +235,4 @@ fn traverse_clear(view: TraverseRay, a: f32, b: f32) -> vec3f {
         return stretch_plain(view.ray, a, b);
     }
     return transmittance_integral(frame.medium.sigma_t, a, b);
-}
-
-// The factor that all stretches of a ray share.
-fn traverse_common(ray: Ray) -> vec3f {
-    if light_is_local() {
-        return vec3f(1.0);
-    }
-    return medium_scattering(-dot(light.direction, ray.direction)) * light.color;
 }

@@ -36,7 +36,7 @@ fn ray_march_equal(ray: Ray, span: vec2f) -> vec3f {
         let s = span.x + (f32(i) + 0.5) * step;
         sum += ray_march_sample(ray, map_ray, s);
     }
-    return sum * step * ray_march_common(ray);
+    return sum * step * light_common(ray);
 }
 
 // Kulla & Fajardo 2012: s = t_p + h tan(xi), equal steps in xi, ds = h (1 + tan^2) d xi.
@@ -53,15 +53,7 @@ fn ray_march_equiangular(ray: Ray, span: vec2f) -> vec3f {
         let s = projection + height * slope;
         sum += ray_march_sample(ray, map_ray, s) * (1.0 + slope * slope);
     }
-    return sum * step * height * ray_march_common(ray);
-}
-
-// The factor that all samples of a ray share.
-fn ray_march_common(ray: Ray) -> vec3f {
-    if light_is_local() {
-        return vec3f(1.0);
-    }
-    return medium_scattering(-dot(light.direction, ray.direction)) * light.color;
+    return sum * step * height * light_common(ray);
 }
 
 // Visibility times the rest of the integrand at distance s, but for the common factor.
