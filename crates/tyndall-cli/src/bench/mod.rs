@@ -12,6 +12,7 @@ mod subject;
 mod table;
 #[cfg(test)]
 mod tests;
+mod yusov;
 
 use std::{
     io::{ErrorKind, Write},
@@ -36,6 +37,7 @@ use table::Table;
 enum Tables {
     Paper(Paper),
     LightVolumes(billeter::LightVolumes),
+    Epipolar(yusov::Epipolar),
     Scaling,
     Poses,
 }
@@ -80,12 +82,19 @@ const SUITES: [Suite; 7] = [
     Suite {
         name: "yusov",
         about: "Yusov 2012, section 9",
-        tables: Tables::Paper(Paper {
-            techniques: &["epipolar"],
-            scenes: &[subject::TERRAIN],
-            size: PICTURE,
-            map: 1024,
-            spot_maps: &[],
+        tables: Tables::Epipolar(yusov::Epipolar {
+            paper: Paper {
+                techniques: &[
+                    "epipolar",
+                    "epipolar initial_step=4 threshold=0.01",
+                    "epipolar slices=0 samples=0 initial_step=4 threshold=0.01",
+                ],
+                scenes: &[subject::TERRAIN, subject::SIBENIK],
+                size: PICTURE,
+                map: 1024,
+                spot_maps: &[],
+            },
+            maps: &[1024, 2048, 4096],
         }),
     },
     Suite {
@@ -122,7 +131,7 @@ const SUITES: [Suite; 7] = [
     },
     Suite {
         name: "poses",
-        about: "min-max from random places: its largest errors beside brute force's",
+        about: "min-max and epipolar from random places: their largest errors beside brute force's",
         tables: Tables::Poses,
     },
 ];
@@ -171,6 +180,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         let report = match &suite.tables {
             Tables::Paper(paper) => paper::run(paper, &bench, &mut stages)?,
             Tables::LightVolumes(suite) => billeter::run(suite, &bench, &mut stages)?,
+            Tables::Epipolar(suite) => yusov::run(suite, &bench, &mut stages)?,
             Tables::Scaling => scaling::run(&bench, &mut stages)?,
             Tables::Poses => poses::run(poses::POSES, &bench, &mut stages)?,
         };

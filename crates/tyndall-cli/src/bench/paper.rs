@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use tyndall::techniques::Technique;
+use tyndall::techniques::{Technique, Value};
 
 use super::{
     Bench, Report,
@@ -12,8 +12,8 @@ use super::{
 use crate::{
     failure::Failure,
     measure::{
-        Budget, EqualQuality, PictureError, Stage, Timing, Timings, Visibility, equal_quality,
-        error_at, error_of, ray_march, steps_in_time, time_of_steps, timed_marches,
+        Budget, EqualQuality, Marches, PictureError, Stage, Timing, Timings, Visibility, error_of,
+        ray_march, steps_in_time, time_of_steps, timed_marches,
     },
     picture::Picture,
     progress::Stages,
@@ -22,7 +22,7 @@ use crate::{
 
 /// What a paper measured.
 pub(super) struct Paper {
-    /// Names of the techniques it compares, whether they are there or not.
+    /// The techniques it compares, whether they are there or not: a name, then any parameters as `key=value`.
     pub(super) techniques: &'static [&'static str],
     pub(super) scenes: &'static [Subject],
     /// Width and height of the pictures [pixels].
@@ -66,6 +66,8 @@ const QUALITY_COLUMNS: [&str; 15] = [
 
 /// A technique's picture against the converged one of the same shadow map.
 struct Quality {
+    /// Its name and parameters.
+    text: &'static str,
     technique: Technique,
     error: PictureError,
     equal: Option<EqualQuality>,
@@ -73,7 +75,7 @@ struct Quality {
 
 /// Measures all of the paper's tables.
 pub(super) fn run(paper: &Paper, bench: &Bench, stages: &mut Stages) -> Result<Report, Failure> {
-    let missing = |name: &&&str| Technique::from_name(name).is_none();
+    let missing = |text: &&&'static str| contender(text).is_none();
     let mut tables = Vec::new();
     for subject in paper.scenes {
         let (setup, what) = subject.load(bench.assets.as_deref(), paper.size, paper.map, stages)?;
@@ -89,14 +91,34 @@ pub(super) fn run(paper: &Paper, bench: &Bench, stages: &mut Stages) -> Result<R
     })
 }
 
-/// The paper's techniques that are there; brute force by itself where none is.
-fn techniques(paper: &Paper, stage: &Stage<'_>) -> Vec<Technique> {
-    let mut own = stage.techniques();
-    own.retain(|technique| paper.techniques.contains(&technique.info().name));
-    if own.is_empty() {
-        own.extend(stage.techniques().into_iter().filter(is_march));
+/// A technique by its name and parameters, `name key=value ...`; `None` where it is not there.
+pub(super) fn contender(text: &'static str) -> Option<Technique> {
+    let mut words = text.split_whitespace();
+    let mut technique = Technique::from_name(words.next()?)?;
+    for word in words {
+        let (key, value) = word.split_once('=')?;
+        let integer = value.parse().map(Value::Integer);
+        let real = || value.parse().map(Value::Real);
+        let value = integer
+            .or_else(|_| real())
+            .unwrap_or_else(|_| Value::Word(value.to_owned()));
+        technique.set(key, &value).ok()?;
     }
-    own
+    Some(technique)
+}
+
+/// The paper's techniques that are there, with their texts; brute force by itself where none is.
+fn techniques(paper: &Paper, stage: &Stage<'_>) -> Vec<(&'static str, Technique)> {
+    let contenders = paper.techniques.iter();
+    let own: Vec<_> = contenders
+        .filter_map(|text| Some((*text, contender(text)?)))
+        .filter(|(_, technique)| stage.place(technique.info()).is_some())
+        .collect();
+    if !own.is_empty() {
+        return own;
+    }
+    let marches = stage.techniques().into_iter().filter(is_march);
+    marches.map(|t| (t.info().name, t)).collect()
 }
 
 fn is_march(technique: &Technique) -> bool {
@@ -120,12 +142,13 @@ fn measure_scene(
     let truth = stages.run("reference", |_| {
         small_stage.reference(Visibility::ShadowMap)
     })?;
+    let mut marches = Marches::new(&small_stage, &truth);
     let mut notes = Vec::new();
     let mut qualities = Vec::new();
-    for technique in candidates {
+    for (text, technique) in candidates {
         let name = technique.info().name;
-        match stages.run(&format!("errors of {name}"), |_| {
-            quality(&small_stage, &technique, &truth)
+        match stages.run(&format!("errors of {text}"), |_| {
+            quality(&small_stage, text, &technique, &truth, &mut marches)
         }) {
             Ok(quality) => qualities.push(quality),
             // What a technique can't do it says by itself; the others can.
@@ -147,7 +170,7 @@ fn measure_scene(
     let rows = qualities
         .iter()
         .zip(&timings.techniques)
-        .map(|(quality, (_, timing))| quality_row(quality, timing, &timings, &small_stage, &truth));
+        .map(|(quality, (_, timing))| quality_row(quality, timing, &timings, &mut marches));
     Ok(vec![
         Table {
             title: title.to_owned(),
@@ -155,7 +178,7 @@ fn measure_scene(
             columns: QUALITY_COLUMNS.to_vec(),
             rows: rows.collect::<Result<_, _>>()?,
         },
-        passes(title, &timings, qualities.len()),
+        passes(title, &timings, &qualities),
     ])
 }
 
@@ -168,12 +191,19 @@ pub(super) fn nothing(title: &str) -> Table {
     }
 }
 
-fn quality(stage: &Stage<'_>, technique: &Technique, truth: &Picture) -> Result<Quality, Failure> {
+fn quality(
+    stage: &Stage<'_>,
+    text: &'static str,
+    technique: &Technique,
+    truth: &Picture,
+    marches: &mut Marches<'_>,
+) -> Result<Quality, Failure> {
     let error = error_of(&stage.in_scatter(technique)?, truth)?;
     let equal = (!is_march(technique))
-        .then(|| equal_quality(stage, error.rel_mae, truth))
+        .then(|| marches.equal_quality(error.rel_mae))
         .transpose()?;
     Ok(Quality {
+        text,
         technique: technique.clone(),
         error,
         equal,
@@ -218,8 +248,7 @@ fn quality_row(
     quality: &Quality,
     timing: &Timing,
     timings: &Timings,
-    small: &Stage<'_>,
-    truth: &Picture,
+    marches: &mut Marches<'_>,
 ) -> Result<Vec<Cell>, Failure> {
     let total = timing.total();
     let march = quality
@@ -234,7 +263,7 @@ fn quality_row(
     let same_time = compared
         .map(|(_, line)| {
             let steps = steps_in_time(total.median, line);
-            error_at(small, steps, truth).map(|error| (steps, error.rel_mae))
+            marches.error_at(steps).map(|error| (steps, error.rel_mae))
         })
         .transpose()?;
     let by_the_line = compared.map(|(equal, line)| {
@@ -250,7 +279,7 @@ fn quality_row(
         })
     };
     Ok(vec![
-        Cell::text(quality.technique.info().name),
+        Cell::text(quality.text),
         Cell::text(timing.place.name()),
         total.into(),
         timing.wall.into(),
@@ -278,10 +307,10 @@ fn steps_cell(equal: Option<EqualQuality>) -> Cell {
     }
 }
 
-/// Every pass of the first `count` techniques, and of the limit.
-fn passes(title: &str, timings: &Timings, count: usize) -> Table {
-    let techniques = timings.techniques.iter().take(count);
-    let techniques = techniques.map(|(technique, timing)| (technique.info().name, timing));
+/// Every pass of the techniques, and of the limit.
+fn passes(title: &str, timings: &Timings, qualities: &[Quality]) -> Table {
+    let techniques = qualities.iter().zip(&timings.techniques);
+    let techniques = techniques.map(|(quality, (_, timing))| (quality.text, timing));
     let limit = timings.limit.iter().map(|limit| ("limit", limit));
     let rows = techniques.chain(limit).flat_map(|(name, timing)| {
         let all: f64 = timing.passes.iter().map(|(_, time)| time.median).sum();
@@ -338,20 +367,25 @@ fn measure_maps(
             light.map_size = [*map; 2];
         }
         let stage = Stage::new(&setup, &bench.backend, stages)?;
-        let techniques = techniques(paper, &stage);
+        let (texts, techniques): (Vec<_>, Vec<_>) = techniques(paper, &stage).into_iter().unzip();
         let timings = stages.run(&format!("time {title}, {map}^2 map"), |_| {
             stage.time(&techniques, &BUDGET)
         })?;
-        rows.extend(timings.techniques.iter().map(|(technique, timing)| {
-            vec![
-                Cell::Count((*map).into()),
-                Cell::text(technique.info().name),
-                Cell::text(timing.place.name()),
-                timing.total().into(),
-                timings.over_limit(timing).into(),
-                Cell::mebibytes(timing.bytes),
-            ]
-        }));
+        rows.extend(
+            texts
+                .iter()
+                .zip(&timings.techniques)
+                .map(|(text, (_, timing))| {
+                    vec![
+                        Cell::Count((*map).into()),
+                        Cell::text(*text),
+                        Cell::text(timing.place.name()),
+                        timing.total().into(),
+                        timings.over_limit(timing).into(),
+                        Cell::mebibytes(timing.bytes),
+                    ]
+                }),
+        );
     }
     Ok(Table {
         title: format!("{title}: far spot light, by shadow map"),

@@ -1,13 +1,14 @@
-//! `min-max` from anywhere: cameras at random within a scene and beside it, towards the light and close to it.
+//! Epipolar techniques from anywhere: cameras at random within a scene and beside it, close to the light, and with the
+//! light on the picture, on its border, in its corners, off each of its sides and behind.
 //!
-//! The technique is exact but for rounding, so that none of its pixels may be as wrong as brute force's worst ones are:
-//! at most twice the 99th percentile of the error of 512 steps over all of a scene's pixels. Errors are relative to the
-//! mean of their picture.
+//! `min-max` is exact but for rounding, so that none of its pixels may be as wrong as brute force's worst ones are: at most
+//! twice the 99th percentile of the error of 512 steps over all of a scene's pixels. `epipolar` interpolates; beside it
+//! stands how wrong it is. Errors are relative to the mean of their picture.
 
-use glam::{Vec3, vec3};
+use glam::{Mat3, Quat, Vec3, vec3};
 use tyndall::{
     frame::{Camera, Emitter, Projection},
-    techniques::Technique,
+    techniques::{Backends, Technique},
 };
 use tyndall_scene::geometry::Bounds;
 use tyndall_testkit::samples::in_box;
@@ -28,9 +29,11 @@ use crate::{
 /// Cameras a scene.
 pub(super) const POSES: usize = 500;
 
-const SIZE: &str = "size=[32,24]";
+const PIXELS: [u32; 2] = [32, 24];
+const ASPECT: f32 = PIXELS[0] as f32 / PIXELS[1] as f32;
 const MAP: &str = "light.0.shadow_map=512";
 const STEPS: u32 = 512;
+const TECHNIQUES: [&str; 2] = ["min-max", "epipolar"];
 /// How much worse than brute force's 99th percentile a pixel may be.
 const FACTOR: f64 = 2.0;
 
@@ -66,13 +69,15 @@ pub(super) fn run(poses: usize, bench: &Bench, stages: &mut Stages) -> Result<Re
     }
     Ok(Report {
         tables: vec![Table {
-            title: "min-max from random places".to_owned(),
+            title: "from random places".to_owned(),
             notes,
             columns: vec![
                 "scene",
+                "technique",
                 "on",
                 "not finite",
                 "p99 of brute force",
+                "p99",
                 "largest error",
                 "pixels over twice the p99",
                 "worst pose",
@@ -84,7 +89,9 @@ pub(super) fn run(poses: usize, bench: &Bench, stages: &mut Stages) -> Result<Re
 }
 
 fn overrides() -> Result<Vec<Override>, Failure> {
-    let parsed = [SIZE, MAP].iter().map(|text| text.parse());
+    let size = format!("size=[{},{}]", PIXELS[0], PIXELS[1]);
+    let texts = [size.as_str(), MAP];
+    let parsed = texts.iter().map(|text| text.parse());
     parsed.collect::<Result<_, _>>().map_err(Failure::input)
 }
 
@@ -92,8 +99,14 @@ fn overrides() -> Result<Vec<Override>, Failure> {
 #[derive(Default)]
 struct Errors {
     march: Vec<f64>,
-    /// With the pose of each; a value that is not finite is an infinite error.
-    min_max: Vec<(Place, Vec<(f64, usize)>)>,
+    techniques: Vec<OfTechnique>,
+}
+
+/// Errors of a technique on one processor, with the pose of each; a value that is not finite is an infinite error.
+struct OfTechnique {
+    name: &'static str,
+    place: Place,
+    errors: Vec<(f64, usize)>,
 }
 
 fn of_scene(
@@ -103,8 +116,10 @@ fn of_scene(
     progress: &dyn Fn(u64, u64),
 ) -> Result<Errors, Failure> {
     let mut stage = Stage::new(setup, &bench.backend, &mut Stages::default())?;
-    let technique = Technique::from_name("min-max").unwrap_or_default();
-    let place = stage.place(technique.info());
+    let techniques: Vec<Technique> = TECHNIQUES
+        .iter()
+        .filter_map(|name| Technique::from_name(name))
+        .collect();
     let mut errors = Errors::default();
     let numbers = in_box(1, poses, [const { -1.0..=1.0 }; 9]);
     for (pose, x) in numbers.iter().rev().take(poses).enumerate() {
@@ -112,14 +127,16 @@ fn of_scene(
         let truth = stage.reference(Visibility::ShadowMap)?;
         let march = stage.in_scatter(&ray_march(STEPS))?;
         errors.march.extend(differences(&march, &truth));
-        errors.add(
-            Place::Cpu,
-            pose,
-            &stage.in_scatter_on_cpu(&technique)?,
-            &truth,
-        );
-        if place == Some(Place::Gpu) {
-            errors.add(Place::Gpu, pose, &stage.in_scatter(&technique)?, &truth);
+        for technique in &techniques {
+            let info = technique.info();
+            if info.backends != Backends::Gpu {
+                let picture = stage.in_scatter_on_cpu(technique)?;
+                errors.add(info.name, Place::Cpu, pose, differences(&picture, &truth));
+            }
+            if stage.place(info) == Some(Place::Gpu) {
+                let picture = stage.in_scatter(technique)?;
+                errors.add(info.name, Place::Gpu, pose, differences(&picture, &truth));
+            }
         }
         progress(pose as u64 + 1, poses as u64);
     }
@@ -142,38 +159,53 @@ fn differences(picture: &Picture, truth: &Picture) -> Vec<f64> {
 }
 
 impl Errors {
-    fn add(&mut self, place: Place, pose: usize, picture: &Picture, truth: &Picture) {
-        let errors = differences(picture, truth).into_iter().map(|e| (e, pose));
-        match self.min_max.iter_mut().find(|(p, _)| *p == place) {
-            Some((_, all)) => all.extend(errors),
-            None => self.min_max.push((place, errors.collect())),
+    fn add(&mut self, name: &'static str, place: Place, pose: usize, differences: Vec<f64>) {
+        let errors = differences.into_iter().map(|e| (e, pose));
+        let mut known = self.techniques.iter_mut();
+        match known.find(|of| (of.name, of.place) == (name, place)) {
+            Some(of) => of.errors.extend(errors),
+            None => self.techniques.push(OfTechnique {
+                name,
+                place,
+                errors: errors.collect(),
+            }),
         }
     }
 
     fn rows(mut self, scene: &str) -> Vec<Vec<Cell>> {
         self.march.sort_unstable_by(f64::total_cmp);
-        let p99 = self.march[self.march.len() * 99 / 100];
-        let row = |(place, errors): &(Place, Vec<(f64, usize)>)| {
+        let bound = p99(&self.march);
+        for of in &mut self.techniques {
+            of.errors.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        let row = |of: &OfTechnique| {
+            let (errors, poses): (Vec<f64>, Vec<usize>) = of.errors.iter().copied().unzip();
             let count = |is: &dyn Fn(f64) -> bool| {
-                Cell::Count(errors.iter().filter(|(e, _)| is(*e)).count() as u64)
+                Cell::Count(errors.iter().filter(|e| is(**e)).count() as u64)
             };
-            let worst = errors.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-            let &(largest, pose) = worst.unwrap_or(&(0.0, 0));
             vec![
                 Cell::text(scene),
-                Cell::text(place.name()),
+                Cell::text(of.name),
+                Cell::text(of.place.name()),
                 count(&|e| !e.is_finite()),
-                Cell::Number(p99),
-                Cell::Number(largest),
-                count(&|e| e > FACTOR * p99),
-                Cell::Count(pose as u64),
+                Cell::Number(bound),
+                Cell::Number(p99(&errors)),
+                Cell::Number(errors.last().copied().unwrap_or(0.0)),
+                count(&|e| e > FACTOR * bound),
+                Cell::Count(poses.last().copied().unwrap_or(0) as u64),
             ]
         };
-        self.min_max.iter().map(row).collect()
+        self.techniques.iter().map(row).collect()
     }
 }
 
-/// Camera number `pose` of random numbers within [-1, 1]: anywhere, towards the light, at the light, or from outside; every fifth orthographic or wide.
+/// The 99th percentile of what is sorted; 0 of nothing.
+fn p99(sorted: &[f64]) -> f64 {
+    sorted.get(sorted.len() * 99 / 100).copied().unwrap_or(0.0)
+}
+
+/// Camera number `pose` of random numbers within [-1, 1]: anywhere, with the light at a chosen place of the picture, at the
+/// light, or from outside; every tenth orthographic, every tenth wide.
 fn camera(setup: &Setup, pose: usize, x: &[f32; 9]) -> Camera {
     let vector = |n: usize| vec3(x[n], x[n + 1], x[n + 2]);
     let bounds = setup.tracer.geometry().bounds();
@@ -185,56 +217,91 @@ fn camera(setup: &Setup, pose: usize, x: &[f32; 9]) -> Camera {
     let anywhere = center + half * vector(0);
     let at_random = vector(3).normalize_or(Vec3::Z);
     let jitter = vector(6);
+    let (width, radius) = (jitter.z.abs(), half.length());
+    let wide = pose % 10 == 4;
+    let yfov = if wide { 2.4 } else { 0.3 + 1.2 * width };
     let light = setup.frame.lights[0].emitter;
-    let (eye, forward) = match pose % 5 {
-        1 => (anywhere, to_light(&light, anywhere) + 0.2 * jitter),
+    let (eye, turn) = match pose % 5 {
+        1 => {
+            let seen = epipole(pose / 5, [jitter.x, jitter.y], yfov);
+            let shown = Quat::from_rotation_arc(seen, to_light(&light, anywhere));
+            (anywhere, shown)
+        }
         2 => match light {
             Emitter::Point { position, .. } | Emitter::Spot { position, .. } => {
                 // From a millimetre to a few decimetres.
                 let distance = 1e-3 * 300.0_f32.powf(jitter.x.abs());
                 let eye = Vec3::from(position) + distance * at_random;
-                (eye, if jitter.y < 0.0 { -at_random } else { jitter })
+                let forward = if jitter.y < 0.0 { -at_random } else { jitter };
+                (eye, looking(forward))
             }
-            _ => (
-                anywhere,
-                to_light(&light, anywhere) * jitter.x.signum() + 1e-3 * jitter,
-            ),
+            _ => {
+                let forward = to_light(&light, anywhere) * jitter.x.signum() + 1e-3 * jitter;
+                (anywhere, looking(forward))
+            }
         },
         3 => {
             let eye = center + 2.0 * half.length() * at_random;
-            (eye, center + 0.5 * half * jitter - eye)
+            (eye, looking(center + 0.5 * half * jitter - eye))
         }
-        _ => (anywhere, at_random),
+        _ => (anywhere, looking(at_random)),
     };
-    let forward = forward.normalize_or(Vec3::Z);
-    let up = if forward.y.abs() < 0.9 {
-        Vec3::Y
-    } else {
-        Vec3::X
-    };
-    let (width, radius) = (jitter.z.abs(), half.length());
-    let wide = pose % 10 == 4;
-    let yfov = if wide { 2.4 } else { 0.3 + 1.2 * width };
-    let [eye, target, up] = [eye, eye + forward, up].map(|v| v.to_array());
-    let mut camera = Camera::perspective(
-        eye,
-        target,
-        up,
-        yfov,
-        4.0 / 3.0,
-        2e-3 * radius,
-        4.0 * radius,
-    );
+    let [eye, target, up] = [eye, eye + turn * Vec3::NEG_Z, turn * Vec3::Y].map(|v| v.to_array());
+    let mut camera =
+        Camera::perspective(eye, target, up, yfov, ASPECT, 2e-3 * radius, 4.0 * radius);
     if pose % 10 == 9 {
         let half = radius * (0.1 + 0.5 * width);
         camera.projection = Projection::Orthographic {
-            half_extent: [half * 4.0 / 3.0, half],
+            half_extent: [half * ASPECT, half],
             center: [0.0; 2],
             near: 2e-3 * radius,
             far: 4.0 * radius,
         };
     }
     camera
+}
+
+/// The turn of an upright camera.
+fn looking(forward: Vec3) -> Quat {
+    let forward = forward.normalize_or(Vec3::Z);
+    let up = if forward.y.abs() < 0.9 {
+        Vec3::Y
+    } else {
+        Vec3::X
+    };
+    let side = forward.cross(up).normalize();
+    Quat::from_mat3(&Mat3::from_cols(side, side.cross(forward), -forward))
+}
+
+/// The unit direction in the camera's space that is seen at place number `case` of its picture, or the opposite one: on the
+/// picture, beside its border, in its corners, off each side, at infinity.
+fn epipole(case: usize, [x, y]: [f32; 2], yfov: f32) -> Vec3 {
+    // In half pictures from the middle.
+    let pixel = 2.0 / PIXELS[0] as f32;
+    let places = [
+        [x, y],
+        [1.0 - pixel * y.abs(), x],
+        [x, -1.0 - pixel * y.abs()],
+        [1.0, 1.0],
+        [-1.0 - 0.1 * pixel * y, 1.0 + 0.1 * pixel * x],
+        [-1.0, x],
+        [-2.0 - y, 2.0 * x],
+        [1.5, x],
+        [x, 3.0 + x],
+        [2.0 * x, -1.2],
+        [x, y],
+    ];
+    let tangent = (0.5 * yfov).tan();
+    let number = case % places.len();
+    let [x, y] = places[number];
+    let is_at_infinity = number + 1 == places.len();
+    let depth = if is_at_infinity { 0.0 } else { -1.0 };
+    let ahead = if case / places.len() % 2 == 0 {
+        1.0
+    } else {
+        -1.0
+    };
+    ahead * vec3(x * tangent * ASPECT, y * tangent, depth).normalize_or(Vec3::NEG_Z)
 }
 
 fn to_light(light: &Emitter, from: Vec3) -> Vec3 {

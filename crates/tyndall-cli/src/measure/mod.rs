@@ -1,6 +1,6 @@
 //! Measuring: a shot set up once ([`Stage`]), then rendered and [timed](Timings) by any technique, and the
-//! [errors](error_of) of its pictures; how many steps brute force needs for the [same error](equal_quality)
-//! or the [same time](equal_time).
+//! [errors](error_of) of its pictures; how many steps brute force needs for the [same error or gets in the
+//! same time](Marches).
 //!
 //! All techniques of a stage see the same depth buffer and the same shadow maps: those that run on the CPU are handed
 //! the GPU's, read back. What they differ in is then theirs alone.
@@ -16,8 +16,7 @@ mod timing;
 pub(crate) mod tests;
 
 pub use equal::{
-    EqualQuality, EqualTime, MAX_STEPS, equal_quality, equal_time, error_at, ray_march,
-    steps_in_time, time_of_steps, timed_marches,
+    EqualQuality, MAX_STEPS, Marches, ray_march, steps_in_time, time_of_steps, timed_marches,
 };
 pub use error::error_of;
 pub use stage::{Place, Stage, converged};

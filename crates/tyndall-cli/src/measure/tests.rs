@@ -39,7 +39,7 @@ fn marching_at_256_steps_needs_256_steps_to_be_as_good() {
         let truth = stage.reference(Visibility::ShadowMap).unwrap();
         let technique = stage.in_scatter(&ray_march(256)).unwrap();
         let target = error_of(&technique, &truth).unwrap().rel_mae;
-        let found = equal_quality(&stage, target, &truth).unwrap();
+        let found = Marches::new(&stage, &truth).equal_quality(target).unwrap();
         assert!(found.reached && found.error.rel_mae <= target, "{found:?}");
         eprintln!(
             "{} steps, error {:.2e}, target {target:.2e}",

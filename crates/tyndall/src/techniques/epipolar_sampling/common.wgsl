@@ -1,9 +1,9 @@
-// What every pass of epipolar sampling reads; `EpipolarParams` of gpu.rs.
+// What every pass of epipolar sampling reads; `SamplingParams` of gpu.rs.
 
-const EPIPOLAR_CRITERION_DEPTH: u32 = 0u;
-const EPIPOLAR_CRITERION_IN_SCATTER: u32 = 1u;
+const SAMPLING_CRITERION_DEPTH: u32 = 0u;
+const SAMPLING_CRITERION_IN_SCATTER: u32 = 1u;
 
-struct EpipolarParams {
+struct SamplingParams {
     epipole: vec3f, // on the picture [pixels], homogeneous
     slices: u32,
     axis: vec3f, // unit, through the eye and the light
@@ -19,21 +19,21 @@ struct EpipolarParams {
     arc: vec2f, // of the border, that slices end on
 }
 
-@group(2) @binding(0) var<uniform> epipolar: EpipolarParams;
+@group(2) @binding(0) var<uniform> sampling: SamplingParams;
 
 // The two slices that a place on the picture [pixels] lies between.
-fn epipolar_slices(place: vec2f) -> ScreenSlices {
-    let border = screen_border(frame.camera.size, epipolar.epipole, place);
-    return screen_slices(epipolar.arc, epipolar.slices, border);
+fn sampling_slices(place: vec2f) -> ScreenSlices {
+    let border = screen_border(frame.camera.size, sampling.epipole, place);
+    return screen_slices(sampling.arc, sampling.slices, border);
 }
 
 // How much a source at one depth may stand for a point at another (Yusov 2012, section 6.6).
-fn epipolar_similarity(depth: f32, source: f32) -> f32 {
+fn sampling_similarity(depth: f32, source: f32) -> f32 {
     let difference = abs(source - depth) / max(min(source, depth), 1e-20);
-    let ratio = epipolar.threshold / max(difference, epipolar.threshold);
+    let ratio = sampling.threshold / max(difference, sampling.threshold);
     let square = ratio * ratio;
     return select(0.0, square * square, source >= 0.0);
 }
 
 // Sources of less weight than this together cannot stand for a point.
-const EPIPOLAR_LEAST_WEIGHT: f32 = 0.01;
+const SAMPLING_LEAST_WEIGHT: f32 = 0.01;

@@ -7,7 +7,7 @@
 
 @compute @workgroup_size(64)
 fn coordinates(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= epipolar.samples {
+    if id.x >= sampling.samples {
         return;
     }
     let line = coordinates_lines[id.y];
@@ -20,5 +20,5 @@ fn coordinates(@builtin(global_invocation_id) id: vec3u) {
         let pixel = vec2u(clamp(place, vec2f(0.0), size - 1.0));
         depth = textureLoad(coordinates_linear_depth, pixel, 0).r;
     }
-    coordinates_depth[id.y * epipolar.samples + id.x] = depth;
+    coordinates_depth[id.y * sampling.samples + id.x] = depth;
 }

@@ -18,7 +18,7 @@ fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let left = transmittance(frame.medium.sigma_t, ray.length);
     let mean_left = dot(left, vec3f(1.0 / 3.0));
     let found = textureLoad(finish_in_scatter, pixel, 0);
-    if epipolar.show != FINISH_LIGHT {
+    if sampling.show != FINISH_LIGHT {
         return vec4f(finish_view(position.xy, found), mean_left);
     }
     var radiance = found.rgb * unshadowed_from(ray, left);
@@ -29,7 +29,7 @@ fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
 }
 
 fn finish_view(place: vec2f, found: vec4f) -> vec3f {
-    switch epipolar.show {
+    switch sampling.show {
         case FINISH_SAMPLES, FINISH_DEPTH_BREAKS: { return finish_sample_view(place); }
         case FINISH_CORRECTED: { return select(vec3f(1.0, 0.0, 0.0), vec3f(0.2), found.a > 0.5); }
         default: { return found.rgb; }
@@ -39,18 +39,18 @@ fn finish_view(place: vec2f, found: vec4f) -> vec3f {
 // Pixels that hold a sample of the nearest slice: white where it was marched, blue where it was interpolated; of the
 // breaks only those that are marched because of one.
 fn finish_sample_view(place: vec2f) -> vec3f {
-    let slices = epipolar_slices(place);
+    let slices = sampling_slices(place);
     let slice = select(slices.first, slices.second, slices.share >= 0.5);
     let line = finish_lines[slice];
     let sample = round(screen_sample(line, place));
     let offset = line.entry + sample * line.step - place;
-    if all(line.step == vec2f(0.0)) || any(abs(offset) > vec2f(0.5)) || sample < 0.0 || u32(sample) >= epipolar.samples {
+    if all(line.step == vec2f(0.0)) || any(abs(offset) > vec2f(0.5)) || sample < 0.0 || u32(sample) >= sampling.samples {
         return vec3f(0.0);
     }
-    let source = finish_sources[slice * epipolar.samples + u32(sample)] & 0xffffu;
+    let source = finish_sources[slice * sampling.samples + u32(sample)] & 0xffffu;
     let is_marched = source == u32(sample);
-    if epipolar.show == FINISH_DEPTH_BREAKS {
-        return vec3f(f32(is_marched && u32(sample) % epipolar.initial_step != 0u));
+    if sampling.show == FINISH_DEPTH_BREAKS {
+        return vec3f(f32(is_marched && u32(sample) % sampling.initial_step != 0u));
     }
     return select(vec3f(0.0, 0.0, 0.4), vec3f(1.0), is_marched);
 }

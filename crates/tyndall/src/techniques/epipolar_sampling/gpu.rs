@@ -19,6 +19,8 @@ use crate::{
 pub(crate) const COMMON: &str = include_str!("common.wgsl");
 const COARSE: &str = include_str!("coarse.wgsl");
 const MARCH: &str = include_str!("march.wgsl");
+const UNSHADOWED: &str = include_str!("unshadowed.wgsl");
+const GROUP_SIZE: &str = include_str!("group.wgsl");
 
 /// Invocations a group of the stages over samples, slices and lists.
 const GROUP: u32 = 64;
@@ -31,7 +33,7 @@ const LEVELS_A_DISPATCH: u32 = 4;
 /// Lists: samples to march, coarse pixels to correct, pixels to correct.
 const LISTS: u64 = 3;
 
-/// `EpipolarParams` of `common.wgsl`.
+/// `SamplingParams` of `common.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct ParamsUniform {
@@ -108,9 +110,9 @@ pub(crate) struct Programs {
     slice_directions: ComputeProgram,
     tree: ComputeProgram,
     march_samples: ComputeProgram,
+    correct: ComputeProgram,
     interpolate: ComputeProgram,
     unwarp: ComputeProgram,
-    correct: ComputeProgram,
     upscale: ComputeProgram,
     finish: ScreenProgram,
 }
@@ -118,16 +120,20 @@ pub(crate) struct Programs {
 /// What a stage binds after its parameters.
 #[derive(Clone, Copy)]
 enum Slot {
-    Uniform,
+    Tree,
+    Correct,
+    Airlight,
     Read,
     Write,
     Texels,
     Picture(TextureFormat),
 }
 
-fn own(slots: &[Slot], airlight: bool) -> Vec<BindGroupLayoutEntry> {
+fn own(slots: &[Slot]) -> Vec<BindGroupLayoutEntry> {
     let entry = |(binding, slot): (u32, &Slot)| match *slot {
-        Slot::Uniform => layout::uniform::<TreeUniform>(binding),
+        Slot::Tree => layout::uniform::<TreeUniform>(binding),
+        Slot::Correct => layout::uniform::<CorrectUniform>(binding),
+        Slot::Airlight => layout::airlight(binding),
         Slot::Read => layout::storage(binding, true),
         Slot::Write => layout::storage(binding, false),
         Slot::Texels => layout::texels(binding),
@@ -135,116 +141,87 @@ fn own(slots: &[Slot], airlight: bool) -> Vec<BindGroupLayoutEntry> {
     };
     let mut entries = vec![layout::uniform::<ParamsUniform>(0)];
     entries.extend((1..).zip(slots).map(entry));
-    if airlight {
-        entries.push(layout::texel_layers(slots.len() as u32 + 1));
-    }
     entries
 }
 
 impl Programs {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        use Slot::{Picture, Read, Texels, Uniform, Write};
+        use Slot::{Airlight, Correct, Picture, Read, Texels, Tree, Write};
         const DEPTH: Slot = Picture(TextureFormat::R32Float);
         const VALUES: Slot = Picture(TextureFormat::Rgba32Float);
-        const GROUP_SIZE: &str = include_str!("group.wgsl");
+        const LIT: &[&str] = &[AIRLIGHT, STRETCH, UNSHADOWED];
+        const MARCHING: &[&str] = &[AIRLIGHT, STRETCH, UNSHADOWED, TRACE, COARSE, MARCH];
         macro_rules! program {
-            ($kind:ident, $name:literal, $modules:expr, $slots:expr, $airlight:expr) => {{
+            ($kind:ident, $name:literal, $modules:expr, $slots:expr) => {{
                 let mut wgsl = vec![COMMON, SCREEN, GROUP_SIZE];
                 wgsl.extend_from_slice($modules);
                 wgsl.push(include_str!(concat!($name, ".wgsl")));
-                let own = own($slots, $airlight);
-                $kind::new(device, shared, $name, &wgsl, $name, &own)
+                $kind::new(device, shared, $name, &wgsl, $name, &own($slots))
             }};
         }
-        const UNSHADOWED: &[&str] = &[AIRLIGHT, STRETCH, include_str!("unshadowed.wgsl")];
-        const MARCHING: &[&str] = &[
-            AIRLIGHT,
-            STRETCH,
-            include_str!("unshadowed.wgsl"),
-            TRACE,
-            COARSE,
-            MARCH,
-        ];
         Self {
-            linear_depth: program!(ComputeProgram, "linear_depth", &[], &[DEPTH], false)
+            linear_depth: program!(ComputeProgram, "linear_depth", &[], &[DEPTH]).for_all_lights(),
+            slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3]).for_all_lights(),
+            coordinates: program!(ComputeProgram, "coordinates", &[], &[Texels, Read, Write])
                 .for_all_lights(),
-            slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3], false)
-                .for_all_lights(),
-            coordinates: program!(
-                ComputeProgram,
-                "coordinates",
-                &[],
-                &[Texels, Read, Write],
-                false
-            )
-            .for_all_lights(),
             refine: program!(
                 ComputeProgram,
                 "refine",
-                UNSHADOWED,
-                &[Read, Read, Write],
-                true
+                LIT,
+                &[Read, Read, Write, Airlight]
             ),
             mark: program!(
                 ComputeProgram,
                 "mark",
                 &[],
-                &[Read, Read, Write, Write, Write],
-                false
+                &[Read, Read, Write, Write, Write]
             )
             .for_all_lights(),
             slice_directions: program!(
                 ComputeProgram,
                 "slice_directions",
                 &[TRACE],
-                &[Read, Write],
-                false
+                &[Read, Write]
             ),
-            tree: program!(
-                ComputeProgram,
-                "tree",
-                &[TRACE],
-                &[Uniform, Read, Write],
-                false
-            ),
+            tree: program!(ComputeProgram, "tree", &[TRACE], &[Tree, Read, Write]),
             march_samples: program!(
                 ComputeProgram,
                 "march_samples",
                 MARCHING,
-                &[Read, Read, Read, Read, Read, Read, Write],
-                true
+                &[Read, Read, Read, Read, Write, Airlight, Read, Read]
             ),
-            interpolate: program!(ComputeProgram, "interpolate", &[], &[Read, Write], false)
-                .for_all_lights(),
-            unwarp: program!(
-                ComputeProgram,
-                "unwarp",
-                &[COARSE],
-                &[Texels, Read, Read, Read, VALUES, Write, Write, Write],
-                false
-            )
-            .for_all_lights(),
             correct: program!(
                 ComputeProgram,
                 "correct",
                 MARCHING,
-                &[Uniform, Texels, Read, Read, Read, Read, Read, VALUES],
-                true
+                &[Correct, Texels, Read, Read, VALUES, Airlight, Read, Read]
             ),
+            interpolate: program!(
+                ComputeProgram,
+                "interpolate",
+                &[],
+                &[Read, Read, Read, VALUES]
+            )
+            .for_all_lights(),
+            unwarp: program!(
+                ComputeProgram,
+                "unwarp",
+                &[COARSE],
+                &[Texels, Read, Texels, VALUES, Write, Write, Write]
+            )
+            .for_all_lights(),
             upscale: program!(
                 ComputeProgram,
                 "upscale",
                 &[COARSE],
-                &[Texels, Texels, VALUES, Write, Write, Write],
-                false
+                &[Texels, Texels, VALUES, Write, Write, Write]
             )
             .for_all_lights(),
             finish: program!(
                 ScreenProgram,
                 "finish",
-                UNSHADOWED,
-                &[Texels, Texels, Read, Read],
-                true
+                LIT,
+                &[Texels, Texels, Read, Read, Airlight]
             ),
         }
     }
@@ -255,15 +232,18 @@ struct Resources {
     params: wgpu::Buffer,
     linear_depth: wgpu::TextureView,
     lines: wgpu::Buffer,
-    traces: wgpu::Buffer,
     depth: wgpu::Buffer,
     sources: wgpu::Buffer,
     /// How long the lists are, and workgroups for each.
     counts: wgpu::Buffer,
     dispatches: wgpu::Buffer,
     marched: wgpu::Buffer,
+    traces: wgpu::Buffer,
     nodes: wgpu::Buffer,
+    /// What marched samples see.
     values: wgpu::Buffer,
+    /// What all samples see, and their depth.
+    samples: wgpu::TextureView,
     coarse: wgpu::TextureView,
     coarse_list: wgpu::Buffer,
     airlight: wgpu::TextureView,
@@ -282,14 +262,19 @@ impl Resources {
                 TextureFormat::R32Float,
             ),
             lines: scope.storage("slice ends", bytes.lines),
-            traces: scope.storage("slice directions", bytes.traces),
             depth: scope.storage("sample depths", bytes.depth),
             sources: scope.storage("interpolation sources", bytes.sources),
             counts: scope.storage("list lengths", 4 * LISTS),
             dispatches: scope.indirect("list workgroups", LISTS),
             marched: scope.storage("marched samples", bytes.sources),
+            traces: scope.storage("slice directions", bytes.traces),
             nodes: scope.storage("min/max trees", bytes.nodes),
-            values: scope.storage("sample values", bytes.values),
+            values: scope.storage("marched values", bytes.values),
+            samples: scope.storage_texture(
+                "sample values",
+                [sizes.samples, sizes.slices],
+                TextureFormat::Rgba32Float,
+            ),
             coarse: scope.storage_texture(
                 "rectangular values",
                 sizes.coarse,
@@ -418,19 +403,25 @@ fn gather(
             buffer(&r.params),
             buffer(&r.lines),
             buffer(&r.depth),
-            buffer(&r.traces),
-            buffer(&r.nodes),
             buffer(&r.marched),
             buffer(&r.counts),
             buffer(&r.values),
             view(&r.airlight),
+            buffer(&r.traces),
+            buffer(&r.nodes),
         ],
         r.indirect(0),
     ));
     passes.push(scope.compute(
         &programs.interpolate,
         "interpolation",
-        &[buffer(&r.params), buffer(&r.sources), buffer(&r.values)],
+        &[
+            buffer(&r.params),
+            buffer(&r.sources),
+            buffer(&r.depth),
+            buffer(&r.values),
+            view(&r.samples),
+        ],
         [sizes.samples.div_ceil(GROUP), sizes.slices, 1],
     ));
     passes
@@ -477,8 +468,7 @@ fn rectangular(
             buffer(&r.params),
             view(&r.linear_depth),
             buffer(&r.lines),
-            buffer(&r.depth),
-            buffer(&r.values),
+            view(&r.samples),
             view(&r.coarse),
             buffer(&r.coarse_list),
             buffer(&r.counts),
@@ -554,23 +544,18 @@ fn correct(
         pad: [0; 2],
     };
     let uniform = scope.uniform(name, &uniform);
-    scope.compute(
-        &programs.correct,
-        name,
-        &[
-            buffer(&r.params),
-            buffer(&uniform),
-            view(&r.linear_depth),
-            buffer(&r.lines),
-            buffer(&r.traces),
-            buffer(&r.nodes),
-            buffer(pixels),
-            buffer(&r.counts),
-            view(out),
-            view(&r.airlight),
-        ],
-        r.indirect(list.into()),
-    )
+    let own = [
+        buffer(&r.params),
+        buffer(&uniform),
+        view(&r.linear_depth),
+        buffer(pixels),
+        buffer(&r.counts),
+        view(out),
+        view(&r.airlight),
+        buffer(&r.traces),
+        buffer(&r.nodes),
+    ];
+    scope.compute(&programs.correct, name, &own, r.indirect(list.into()))
 }
 
 #[cfg(test)]
@@ -583,7 +568,7 @@ mod tests {
     fn parameters_are_laid_out_as_in_wgsl() {
         let modules = [FRAME_MODULES, &[SCREEN, COMMON]].concat();
         let shader = Shader::new(&modules).expect("it is valid");
-        let found = shader.struct_layout("EpipolarParams").expect("it is there");
+        let found = shader.struct_layout("SamplingParams").expect("it is there");
         let ours = rust_layout!(ParamsUniform {
             epipole,
             slices,

@@ -3,7 +3,8 @@
 // column is lit in part. A node of the tree is lit or dark as a whole iff all of its columns are, by the same comparisons
 // of the same numbers, and adjoining lit columns make one stretch: with the tree and without it the stretches are the same.
 
-// Bindings: `march_nodes`, the trees.
+@group(2) @binding(7) var<storage, read> march_traces: array<Trace>;
+@group(2) @binding(8) var<storage, read> march_nodes: array<vec2f>;
 
 // Where something tints the light, a ray is cut into this many steps at least.
 const MARCH_TINTED_STEPS: f32 = 256.0;
@@ -25,6 +26,33 @@ struct MarchPart {
     run: vec2f, // lambda of what is known to be lit
 }
 
+// A sample of a slice.
+fn march_sample(slice: u32, ray: Ray) -> vec3f {
+    return march(slice, march_traces[slice], sampling.levels, ray);
+}
+
+// A pixel: in the two slices it lies between; where those are not on the picture, in a slice of its own, without a tree.
+fn march_pixel(place: vec2f, ray: Ray) -> vec3f {
+    let slices = sampling_slices(place);
+    var sum = vec4f(0.0);
+    for (var i = 0u; i < 3u && (i < 2u || sum.w < SAMPLING_LEAST_WEIGHT); i++) {
+        let slice = select(slices.first, slices.second, i == 1u);
+        var weight = select(1.0 - slices.share, slices.share, i == 1u);
+        var levels = sampling.levels;
+        var trace = march_traces[slice];
+        if i == 2u {
+            trace = trace_slice(place, screen_direction(sampling.epipole, place), sampling.axis);
+            levels = 0u;
+            weight = 1.0;
+        } else if trace.columns.y == 0u {
+            // A line that the picture shows nothing of.
+            continue;
+        }
+        sum += weight * vec4f(march(slice, trace, levels, ray), 1.0);
+    }
+    return sum.rgb / sum.w;
+}
+
 // The mean visibility of the light along a ray: what is seen of its unshadowed light, tints included.
 fn march(slice: u32, trace: Trace, levels: u32, ray: Ray) -> vec3f {
     let span = light_reach(ray);
@@ -35,7 +63,7 @@ fn march(slice: u32, trace: Trace, levels: u32, ray: Ray) -> vec3f {
     for (var i = 0u; i < march_parts(); i++) {
         let part = march_part(i, trace, ray, span);
         let row = slice * trace_charts() + part.chart;
-        sum += march_columns(row * epipolar.columns, trace, levels, ray, part);
+        sum += march_columns(row * sampling.columns, trace, levels, ray, part);
     }
     return unshadowed_share(sum, unshadowed(ray));
 }
@@ -54,7 +82,7 @@ fn march_part(index: u32, trace: Trace, ray: Ray, span: vec2f) -> MarchPart {
         return march_beyond(span);
     }
     let chart = select(0u, index, SHADOW_KIND == SHADOW_CUBE);
-    let over = trace_ray(trace, chart, epipolar.axis, ray, span);
+    let over = trace_ray(trace, chart, sampling.axis, ray, span);
     let is_empty = over.span.x >= over.span.y;
     if SHADOW_KIND == SHADOW_SINGLE && index != 1u {
         if is_empty {
@@ -113,9 +141,9 @@ fn march_columns(tree: u32, trace: Trace, levels: u32, ray: Ray, part: MarchPart
             let depths = line.z.x + edges * rise;
             var bounds = vec2f(0.0);
             if level == 0u {
-                bounds = vec2f(trace_depth(trace, part.chart, epipolar.axis, column));
+                bounds = vec2f(trace_depth(trace, part.chart, sampling.axis, column));
             } else {
-                bounds = march_nodes[tree + (epipolar.columns >> level) + (column >> level)];
+                bounds = march_nodes[tree + (sampling.columns >> level) + (column >> level)];
             }
             lit = edges;
             if min(depths.x, depths.y) < bounds.y {

@@ -2,12 +2,10 @@
 
 @group(2) @binding(1) var<storage, read> samples_lines: array<ScreenLine>;
 @group(2) @binding(2) var<storage, read> samples_depth: array<f32>;
-@group(2) @binding(3) var<storage, read> samples_traces: array<Trace>;
-@group(2) @binding(4) var<storage, read> march_nodes: array<vec2f>;
-@group(2) @binding(5) var<storage, read> samples_list: array<u32>;
-@group(2) @binding(6) var<storage, read> samples_counts: array<u32>;
-@group(2) @binding(7) var<storage, read_write> samples_values: array<vec4f>;
-@group(2) @binding(8) var airlight_table: texture_2d_array<f32>;
+@group(2) @binding(3) var<storage, read> samples_list: array<u32>;
+@group(2) @binding(4) var<storage, read> samples_counts: array<u32>;
+@group(2) @binding(5) var<storage, read_write> samples_values: array<vec4f>;
+@group(2) @binding(6) var airlight_table: texture_2d_array<f32>;
 
 @compute @workgroup_size(64)
 fn march_samples(@builtin(global_invocation_id) id: vec3u) {
@@ -15,9 +13,9 @@ fn march_samples(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let here = samples_list[id.x];
-    let slice = here / epipolar.samples;
+    let slice = here / sampling.samples;
     let line = samples_lines[slice];
-    let place = line.entry + f32(here % epipolar.samples) * line.step;
+    let place = line.entry + f32(here % sampling.samples) * line.step;
     let ray = camera_ray_to(place, samples_depth[here]);
-    samples_values[here] = vec4f(march(slice, samples_traces[slice], epipolar.levels, ray), 1.0);
+    samples_values[here] = vec4f(march_sample(slice, ray), 1.0);
 }

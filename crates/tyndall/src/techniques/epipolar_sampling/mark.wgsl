@@ -19,8 +19,8 @@ fn mark(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) in
     }
     workgroupBarrier();
     let sample = group.x * MARK_GROUP + index;
-    let here = group.y * epipolar.samples + sample;
-    let is_own = sample < epipolar.samples && mark_depth[here] >= 0.0 && (mark_sources[here] & 0xffffu) == sample;
+    let here = group.y * sampling.samples + sample;
+    let is_own = sample < sampling.samples && mark_depth[here] >= 0.0 && (mark_sources[here] & 0xffffu) == sample;
     if is_own {
         atomicOr(&mark_bits[index / 32u], 1u << (index % 32u));
     }

@@ -21,13 +21,13 @@ fn refine(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
     }
     workgroupBarrier();
     let sample = group.x * REFINE_GROUP + index;
-    let here = group.y * epipolar.samples + sample;
-    let is_last = sample + 1u >= epipolar.samples;
+    let here = group.y * sampling.samples + sample;
+    let is_last = sample + 1u >= sampling.samples;
     if !is_last && refine_differ(group.y, sample, refine_depth[here], refine_depth[here + 1u]) {
         atomicOr(&refine_breaks[index / 32u], 1u << (index % 32u));
     }
     workgroupBarrier();
-    if sample < epipolar.samples {
+    if sample < sampling.samples {
         refine_sources[here] = refine_search(group.x * REFINE_GROUP, sample);
     }
 }
@@ -36,8 +36,8 @@ fn refine_differ(slice: u32, sample: u32, depth: f32, next: f32) -> bool {
     if depth < 0.0 || next < 0.0 {
         return depth != next;
     }
-    if epipolar.criterion == EPIPOLAR_CRITERION_DEPTH {
-        return abs(depth - next) > epipolar.threshold * min(depth, next);
+    if sampling.criterion == SAMPLING_CRITERION_DEPTH {
+        return abs(depth - next) > sampling.threshold * min(depth, next);
     }
     let line = refine_lines[slice];
     var seen: array<vec3f, 2>;
@@ -45,17 +45,17 @@ fn refine_differ(slice: u32, sample: u32, depth: f32, next: f32) -> bool {
         let place = line.entry + f32(sample + i) * line.step;
         seen[i] = unshadowed(camera_ray_to(place, select(depth, next, i == 1u)));
     }
-    return any(abs(seen[0] - seen[1]) > epipolar.threshold * max(seen[0], seen[1]));
+    return any(abs(seen[0] - seen[1]) > sampling.threshold * max(seen[0], seen[1]));
 }
 
 // The ends of the section that a sample lies in, cut by the breaks on either side.
 fn refine_search(group_start: u32, sample: u32) -> u32 {
-    var section = epipolar.initial_step;
-    if sample < section && screen_epipole_is_inside(frame.camera.size, epipolar.epipole) {
+    var section = sampling.initial_step;
+    if sample < section && screen_epipole_is_inside(frame.camera.size, sampling.epipole) {
         section = max(section / REFINE_DENSER, 1u);
     }
     let start = sample - sample % section;
-    let end = min(start + section, epipolar.samples - 1u);
+    let end = min(start + section, sampling.samples - 1u);
     if sample == start || sample == end {
         return sample | (sample << 16u);
     }

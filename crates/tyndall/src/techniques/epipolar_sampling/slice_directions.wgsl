@@ -5,12 +5,12 @@
 
 @compute @workgroup_size(64)
 fn slice_directions(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= epipolar.slices {
+    if id.x >= sampling.slices {
         return;
     }
-    let border = screen_slice_border(epipolar.arc, epipolar.slices, id.x);
+    let border = screen_slice_border(sampling.arc, sampling.slices, id.x);
     let exit = screen_exit(frame.camera.size, border);
-    var trace = trace_slice(exit, screen_direction(epipolar.epipole, exit), epipolar.axis);
+    var trace = trace_slice(exit, screen_direction(sampling.epipole, exit), sampling.axis);
     if all(directions_lines[id.x].step == vec2f(0.0)) {
         trace.columns = vec2u(0u);
     }

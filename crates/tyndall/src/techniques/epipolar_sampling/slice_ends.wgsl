@@ -12,8 +12,8 @@ fn slice_ends(@builtin(global_invocation_id) id: vec3u) {
         slice_dispatches[3u * id.x + 1u] = 1u;
         slice_dispatches[3u * id.x + 2u] = 1u;
     }
-    if id.x < epipolar.slices {
-        let border = screen_slice_border(epipolar.arc, epipolar.slices, id.x);
-        slice_lines[id.x] = screen_line(frame.camera.size, epipolar.epipole, border, epipolar.samples);
+    if id.x < sampling.slices {
+        let border = screen_slice_border(sampling.arc, sampling.slices, id.x);
+        slice_lines[id.x] = screen_line(frame.camera.size, sampling.epipole, border, sampling.samples);
     }
 }

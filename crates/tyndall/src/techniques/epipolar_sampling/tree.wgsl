@@ -15,7 +15,7 @@ const TREE_NOTHING: vec2f = vec2f(1e30, -1e30);
 
 @compute @workgroup_size(64)
 fn tree(@builtin(global_invocation_id) id: vec3u) {
-    if 16u * id.x >= epipolar.columns >> tree_params.base {
+    if 16u * id.x >= sampling.columns >> tree_params.base {
         return;
     }
     let trace = tree_traces[id.y / trace_charts()];
@@ -44,19 +44,19 @@ fn tree_union(a: vec2f, b: vec2f) -> vec2f {
 
 fn tree_child(row: u32, trace: Trace, index: u32) -> vec2f {
     if tree_params.base > 0u {
-        let count = epipolar.columns >> tree_params.base;
-        return select(TREE_NOTHING, tree_nodes[row * epipolar.columns + count + index], index < count);
+        let count = sampling.columns >> tree_params.base;
+        return select(TREE_NOTHING, tree_nodes[row * sampling.columns + count + index], index < count);
     }
     if index < trace.columns.x || index >= trace.columns.y {
         return TREE_NOTHING;
     }
-    return vec2f(trace_depth(trace, row % trace_charts(), epipolar.axis, index));
+    return vec2f(trace_depth(trace, row % trace_charts(), sampling.axis, index));
 }
 
 // A node of a level above the children's, where the tree goes so high.
 fn tree_keep(row: u32, level: u32, index: u32, node: vec2f) {
-    let count = epipolar.columns >> (tree_params.base + level);
+    let count = sampling.columns >> (tree_params.base + level);
     if index < count {
-        tree_nodes[row * epipolar.columns + count + index] = node;
+        tree_nodes[row * sampling.columns + count + index] = node;
     }
 }

@@ -13,19 +13,19 @@ fn upscale(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let depth = textureLoad(upscale_linear_depth, id.xy, 0).r;
-    let place = (vec2f(id.xy) - f32(epipolar.downscale / 2u)) / f32(epipolar.downscale);
+    let place = (vec2f(id.xy) - f32(sampling.downscale / 2u)) / f32(sampling.downscale);
     let base = vec2i(floor(place));
     let share = place - floor(place);
     var sum = vec4f(0.0);
     for (var i = 0; i < 4; i++) {
         let corner = vec2i(i & 1, i >> 1);
-        let coarse = vec2u(clamp(base + corner, vec2i(0), vec2i(epipolar.coarse_size) - 1));
+        let coarse = vec2u(clamp(base + corner, vec2i(0), vec2i(sampling.coarse_size) - 1));
         let source = textureLoad(upscale_linear_depth, coarse_pixel(coarse), 0).r;
         let weights = select(1.0 - share, share, corner == vec2i(1));
-        let weight = weights.x * weights.y * epipolar_similarity(depth, source);
+        let weight = weights.x * weights.y * sampling_similarity(depth, source);
         sum += weight * vec4f(textureLoad(upscale_coarse, coarse, 0).rgb, 1.0);
     }
-    if sum.w >= EPIPOLAR_LEAST_WEIGHT {
+    if sum.w >= SAMPLING_LEAST_WEIGHT {
         textureStore(upscale_out, id.xy, vec4f(sum.rgb / sum.w, 1.0));
         return;
     }
