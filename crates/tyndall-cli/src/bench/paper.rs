@@ -27,13 +27,15 @@ pub(super) struct Paper {
     pub(super) scenes: &'static [Subject],
     /// Width and height of the pictures [pixels].
     pub(super) size: [u32; 2],
+    /// Errors are measured on pictures this many times smaller on each side; 1 where quality depends on the size.
+    pub(super) reduction: u32,
     /// Side of the shadow map [texels].
     pub(super) map: u32,
     /// Sides of shadow maps of a second table [texels], with a far spot light in the sun's place; none: no such table.
     pub(super) spot_maps: &'static [u32],
 }
 
-/// Errors are measured on pictures this many times smaller on each side: the search for equal quality needs many.
+/// What [`Paper::reduction`] mostly is: the search for equal quality needs many pictures.
 pub(super) const REDUCTION: u32 = 4;
 
 /// Marches of more steps are searched for, but not timed: their frames would take minutes on a software adapter.
@@ -133,7 +135,7 @@ fn measure_scene(
     stages: &mut Stages,
 ) -> Result<Vec<Table>, Failure> {
     let mut small = setup.clone();
-    small.size = setup.size.map(|side| (side / REDUCTION).max(1));
+    small.size = setup.size.map(|side| (side / paper.reduction).max(1));
     let small_stage = Stage::new(&small, &bench.backend, stages)?;
     let candidates = techniques(paper, &small_stage);
     if candidates.is_empty() {

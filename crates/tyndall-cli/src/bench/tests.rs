@@ -6,6 +6,7 @@ const TINY: Paper = Paper {
     techniques: &["min-max", "sleight-of-hand"],
     scenes: &[subject::DRAGON],
     size: [64, 48],
+    reduction: 4,
     map: 128,
     spot_maps: &[64, 128],
 };

@@ -28,6 +28,17 @@
 //! `initial_step` and `threshold` trade time for error: the same terrain with 4 and 0.01 has an error of 2e-4 for a
 //! few milliseconds more. Pictures and coloured glass are looked up column by column of every lit stretch.
 //!
+//! What was tried, 1280 x 960 pixels on a software driver:
+//!
+//! - Samples integrated by the trees of technique `min-max`, over the rectified shadow map, in place of algorithm 2, which
+//!   Chen et al. suggest. The trees cost more than they save: terrain with a 4096^2 map 260 ms for trees and marching, a
+//!   church 590, against 66 and 142; with a 1024^2 map 65 and 130, against 24 and 48. Errors are those of interpolation
+//!   either way: church 0.0227 against 0.0242, through a rose window 0.0535 against 0.0543.
+//! - Values and depths of samples in one picture in place of two buffers: unwarping takes half as long.
+//!
+//! On terrain brute force is as good with some 200 steps, 7 times the time; to be 30 times faster, all stages together
+//! would have to take less time than a pass that just reads the depth buffer and writes the picture.
+//!
 //! Cost: slices x map side texels for the trees, some nodes a marched sample, and a few texels a pixel: most of the time
 //! goes into the stages over pixels.
 //!

@@ -80,8 +80,9 @@
 //!
 //! Cells that span two faces of a cube are not decided; shadows as fine as the map's texels leave few
 //! leaves decided, and the technique is then a walk with a detour: in a forest at 1280 x 960 pixels and a 4096^2 map a
-//! ray visits 191 nodes and 577 texels (242 and 285 with 4096 x 4096 cells), and a frame takes as long as some 1600
-//! steps of marching, against 100 in a church.
+//! ray visits 191 nodes and 577 texels (242 and 285 with 4096 x 4096 cells), and a frame takes as long as some 2000
+//! steps of marching, against 100 in a church. It is exact for that: marching is not as good with 32768 steps, 15 times
+//! the time (`tyndall bench chen`), but with 2000 steps its error there is 0.003, which may do.
 
 pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
