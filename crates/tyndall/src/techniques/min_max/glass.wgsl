@@ -6,16 +6,19 @@ fn glass_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
     let e = epipolar;
     let leaves = traverse_leaves(view.place, view.has_leaves, vec2f(a, b));
     let end_leaf = leaves.y;
+    // There is no glass beside the map.
+    let covered = glass_covered(view, vec2f(a, b));
+    var beside = a < covered.x;
     var level = 0u;
     var index = leaves.x;
     // What no leaf holds whole may be behind glass.
-    var tinted = true;
+    var tinted = !beside;
     var start = a;
     var sum = vec3f(0.0);
     loop {
         // On while it is as before; both states are told by the least S alone.
         loop {
-            if (index << level) >= end_leaf {
+            if beside || (index << level) >= end_leaf {
                 break;
             }
             let clear = view.place.b < tree_minimum(glass_nodes[tree_node(e.samples, view.slice, level, index)]);
@@ -32,16 +35,30 @@ fn glass_stretch(view: TraverseRay, a: f32, b: f32) -> vec3f {
         }
         let leaf = min(index << level, end_leaf);
         let is_last = tinted && leaf >= end_leaf;
-        let stop = clamp(select(traverse_leaf(view, leaf), b, is_last), start, b);
+        var stop = select(traverse_leaf(view, leaf), covered.y, is_last);
+        if beside {
+            stop = select(covered.x, b, start >= covered.y);
+        }
+        stop = clamp(stop, start, b);
         sum += glass_walk(view, start, select(start, stop, tinted));
         sum += traverse_clear(view, start, select(stop, start, tinted));
         start = stop;
         if start >= b {
             break;
         }
+        beside = is_last;
         tinted = !tinted;
     }
     return sum;
+}
+
+// The part of a stretch that the map covers; none of it begins and ends at its end.
+fn glass_covered(view: TraverseRay, stretch: vec2f) -> vec2f {
+    if SHADOW_KIND != SHADOW_SINGLE {
+        return stretch;
+    }
+    let covered = shadow_covered(view.map_ray, stretch);
+    return select(stretch.yy, covered, covered.x < covered.y);
 }
 
 // Texel by texel.
@@ -58,8 +75,8 @@ fn glass_walk(view: TraverseRay, a: f32, b: f32) -> vec3f {
         let middle = 0.5 * (s + end);
         let zw = walk.c0.zw + middle * walk.c1.zw;
         let texel = vec2u(clamp(walk.texel, vec2i(0), vec2i(size) - 1));
-        let behind = shadow_glass_texel_tint(texel, walk.face, zw.x / zw.y);
-        let tint = select(behind, vec3f(1.0), shadow_walk_is_outside(walk));
+        // By rounding alone outside the map, where it covers the ray.
+        let tint = shadow_glass_texel_tint(texel, walk.face, zw.x / zw.y);
         sum += tint * light_ray_tint(view.ray.origin + middle * view.ray.direction) * tint_even(view.ray, s, end);
         walk = shadow_walk_on(view.map_ray, walk, end);
         s = end;
