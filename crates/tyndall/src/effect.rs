@@ -12,6 +12,7 @@ use crate::{
         scope::{LightScope, Shared},
         uniforms::{FrameUniform, LightUniform},
     },
+    occluder::Occluder,
     techniques::{Backends, Programs},
     validate,
 };
@@ -83,6 +84,9 @@ pub struct LightInputs<'a> {
     pub glass: Option<&'a wgpu::TextureView>,
     /// The light's texture: 2-D, filterable, linear when read.
     pub texture: Option<&'a wgpu::TextureView>,
+    /// All that may block this light, as triangles, for techniques that bound shadows by geometry (`hybrid`); `None`: not
+    /// known.
+    pub occluders: Option<&'a [Occluder<'a>]>,
     /// A number that changes whenever the shadow map's content does: what a technique made of the map alone for the
     /// frame before, if that was recorded and submitted, is used again. `None`: the map may change from frame to frame.
     pub shadow_revision: Option<u64>,

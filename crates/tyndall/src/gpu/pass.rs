@@ -60,8 +60,11 @@ pub(crate) struct Draw {
 
 /// How much a draw draws.
 pub(crate) enum Vertices {
-    /// So many vertices, so many times.
-    Direct { vertices: u32, instances: u32 },
+    /// So many vertices, once an instance.
+    Direct {
+        vertices: u32,
+        instances: std::ops::Range<u32>,
+    },
     /// What stands in a buffer at an offset [bytes].
     Indirect(wgpu::Buffer, u64),
 }
@@ -119,7 +122,7 @@ impl Pass {
                         Vertices::Direct {
                             vertices,
                             instances,
-                        } => pass.draw(0..*vertices, 0..*instances),
+                        } => pass.draw(0..*vertices, instances.clone()),
                         Vertices::Indirect(buffer, offset) => pass.draw_indirect(buffer, *offset),
                     }
                 }

@@ -1,5 +1,7 @@
 //! What a technique sees when it prepares a light: the frame, the light's inputs, and where to keep things.
 
+use std::num::NonZeroU64;
+
 use super::{
     airlight::AirlightPictures,
     layout::{self, Absent},
@@ -44,6 +46,26 @@ impl Shared {
     }
 }
 
+/// Offsets of uniform buffers are multiples of this, by WebGPU's default limits [bytes].
+const BLOCK_STRIDE: usize = 256;
+
+/// Uniform blocks of one buffer.
+pub(crate) struct Blocks {
+    buffer: wgpu::Buffer,
+    size: Option<NonZeroU64>,
+}
+
+impl Blocks {
+    /// The block of this index.
+    pub(crate) fn binding(&self, index: usize) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.buffer,
+            offset: (index * BLOCK_STRIDE) as u64,
+            size: self.size,
+        })
+    }
+}
+
 /// One light of a frame that is being prepared.
 pub(crate) struct LightScope<'a> {
     pub(crate) device: &'a wgpu::Device,
@@ -83,6 +105,24 @@ impl LightScope<'_> {
     ) -> wgpu::Buffer {
         self.pool
             .uniform(self.device, self.queue, (Some(self.index), name), value)
+    }
+
+    /// Uniform blocks of this light that stand in one buffer; at least one.
+    pub(crate) fn blocks<T: bytemuck::Pod>(&mut self, name: &'static str, values: &[T]) -> Blocks {
+        let mut bytes = vec![0; (values.len().max(1)) * BLOCK_STRIDE];
+        for (value, slot) in values.iter().zip(bytes.chunks_mut(BLOCK_STRIDE)) {
+            slot[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(value));
+        }
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let key = (Some(self.index), name);
+        let buffer = self
+            .pool
+            .buffer(self.device, key, bytes.len() as u64, usage);
+        self.queue.write_buffer(&buffer, 0, &bytes);
+        Blocks {
+            buffer,
+            size: NonZeroU64::new(size_of::<T>() as u64),
+        }
     }
 
     /// A storage buffer of this light.

@@ -1,6 +1,7 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
 pub mod epipolar_sampling;
+pub mod hybrid;
 pub mod incremental;
 pub mod light_volume;
 pub mod min_max;
@@ -37,6 +38,8 @@ pub enum Technique {
     LightVolume(light_volume::Params),
     /// Epipolar sampling.
     Epipolar(epipolar_sampling::Params),
+    /// Shadow volumes and steps.
+    Hybrid(hybrid::Params),
 }
 
 /// Which backends a technique runs on.
@@ -97,6 +100,7 @@ pub const TABLE: &[TechniqueInfo] = &[
     ray_march::INFO,
     epipolar_sampling::INFO,
     light_volume::INFO,
+    hybrid::INFO,
     incremental::INFO,
     reference::INFO,
 ];
@@ -131,6 +135,7 @@ impl Technique {
             Self::Incremental(_) => &incremental::INFO,
             Self::LightVolume(_) => &light_volume::INFO,
             Self::Epipolar(_) => &epipolar_sampling::INFO,
+            Self::Hybrid(_) => &hybrid::INFO,
         }
     }
 
@@ -143,6 +148,7 @@ impl Technique {
             Self::Incremental(p) => p.list(),
             Self::LightVolume(p) => p.list(),
             Self::Epipolar(p) => p.list(),
+            Self::Hybrid(p) => p.list(),
         }
     }
 
@@ -158,6 +164,7 @@ impl Technique {
             Self::Incremental(p) => p.set(key, value),
             Self::LightVolume(p) => p.set(key, value),
             Self::Epipolar(p) => p.set(key, value),
+            Self::Hybrid(p) => p.set(key, value),
         }
     }
 
@@ -180,10 +187,12 @@ impl Technique {
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
             // The table says they are the GPU's.
-            Self::LightVolume(_) | Self::Epipolar(_) => Err(PrepareError::Unsupported {
-                technique: self.info().name,
-                what: "its work on the CPU".into(),
-            }),
+            Self::LightVolume(_) | Self::Epipolar(_) | Self::Hybrid(_) => {
+                Err(PrepareError::Unsupported {
+                    technique: self.info().name,
+                    what: "its work on the CPU".into(),
+                })
+            }
         }
     }
 }
@@ -196,6 +205,7 @@ pub(crate) struct Programs {
     min_max: OnceLock<min_max::gpu::Programs>,
     light_volume: OnceLock<light_volume::gpu::Programs>,
     epipolar: OnceLock<epipolar_sampling::gpu::Programs>,
+    hybrid: OnceLock<hybrid::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -240,6 +250,10 @@ impl Technique {
             Self::Epipolar(p) => {
                 let make = || epipolar_sampling::gpu::Programs::new(device, shared);
                 epipolar_sampling::gpu::passes(p, programs.epipolar.get_or_init(make), scope)
+            }
+            Self::Hybrid(p) => {
+                let make = || hybrid::gpu::Programs::new(device, shared);
+                hybrid::gpu::passes(p, programs.hybrid.get_or_init(make), scope)
             }
             // Refused by the table: they have no GPU side.
             Self::Reference(_) | Self::Incremental(_) => Vec::new(),
