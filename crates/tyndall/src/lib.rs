@@ -101,6 +101,8 @@ mod occluder;
 pub mod physics;
 pub mod shadow;
 pub mod techniques;
+#[cfg(feature = "gpu")]
+pub mod temporal;
 mod validate;
 
 #[cfg(feature = "gpu")]

@@ -7,7 +7,7 @@ use super::{
     layout::{self, Absent},
     pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
     pool::Pool,
-    program::{ComputeProgram, ScreenProgram},
+    program::{ComputeProgram, ScreenProgram, Stencil},
     uniforms::LightVariant,
 };
 use crate::{
@@ -86,6 +86,11 @@ pub(crate) struct LightScope<'a> {
     pub(crate) light_group: wgpu::BindGroup,
     /// What the last pass writes: the lights so far and this one (rgb), and the mean transmittance (a).
     pub(crate) target: wgpu::TextureView,
+    /// Which pixels the last pass writes, where 1; `None`: all.
+    pub(crate) stencil: Option<wgpu::TextureView>,
+    /// A picture of the view's size that the last pass reads at its own pixel, and that may change where neither depth nor
+    /// shadow map do; two half floats.
+    pub(crate) witness: Option<wgpu::TextureView>,
     /// What the frame's passes count.
     pub(crate) counts: &'a mut Vec<Count>,
 }
@@ -228,9 +233,19 @@ impl LightScope<'_> {
         name: &str,
         resources: &[wgpu::BindingResource<'_>],
     ) -> Pass {
+        let stencil = match self.stencil {
+            None => Stencil::Absent,
+            Some(_) => Stencil::Tested,
+        };
+        let draw = FullScreen {
+            pipeline: program.with_stencil(self.device, self.variant, stencil),
+            groups: self.groups(program.bind(self.device, resources)),
+            target: self.target.clone(),
+            stencil: self.stencil.clone(),
+        };
         Pass {
             name: self.pass_name(name),
-            work: Work::FullScreen(vec![self.draw(program, resources, self.target.clone())]),
+            work: Work::FullScreen(vec![draw]),
         }
     }
 
@@ -245,6 +260,7 @@ impl LightScope<'_> {
             pipeline: program.get(self.device, self.variant),
             groups: self.groups(program.bind(self.device, resources)),
             target,
+            stencil: None,
         }
     }
 
@@ -273,7 +289,7 @@ impl LightScope<'_> {
         format!("{name} light {}", self.index)
     }
 
-    fn groups(&self, own: wgpu::BindGroup) -> Vec<wgpu::BindGroup> {
+    pub(crate) fn groups(&self, own: wgpu::BindGroup) -> Vec<wgpu::BindGroup> {
         vec![self.frame_group.clone(), self.light_group.clone(), own]
     }
 }

@@ -20,7 +20,8 @@ use wgpu::util::DeviceExt;
 
 use edges::Edges;
 
-/// Triangles on the device, ready to cast shadow volumes. Made once a mesh, placed anew in each frame.
+/// Triangles on the device, ready to cast shadow volumes. Made once a mesh, placed anew in each frame; clones share them.
+#[derive(Clone)]
 pub struct OccluderMesh {
     pub(crate) corners: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,

@@ -17,6 +17,7 @@ use {
         effect::LightInputs,
         frame::Light,
         gpu::{pass::Pass, program::ScreenProgram, scope::LightScope},
+        temporal::Reach,
     },
     std::sync::OnceLock,
 };
@@ -224,6 +225,15 @@ impl Technique {
             Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
             Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
             _ => Ok(()),
+        }
+    }
+
+    /// How far from its own ray a pixel's last pass looks.
+    pub(crate) fn reach(&self) -> Reach {
+        match self {
+            Self::RayMarch(_) | Self::Hybrid(_) => Reach::Pixels(0.0),
+            Self::MinMax(p) => min_max::gpu::reach(p),
+            _ => Reach::Picture,
         }
     }
 

@@ -7,7 +7,7 @@ use crate::{
     effect::CountValue,
     gpu::{
         layout,
-        pass::{Pass, Work},
+        pass::{Pass, Vertices, Work},
         program::{ComputeProgram, Raster, ScreenProgram},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, MARCH, STRETCH},
@@ -20,6 +20,7 @@ use crate::{
 
 const BOUNDS: &str = include_str!("bounds.wgsl");
 const EYE: &str = include_str!("eye.wgsl");
+const EYE_BOUNDS: &str = include_str!("eye_bounds.wgsl");
 /// The pass that writes the light.
 pub(crate) const HYBRID: &str = include_str!("hybrid.wgsl");
 
@@ -55,6 +56,7 @@ pub(crate) struct Programs {
     volumes: VolumePrograms,
     eye_clear: ComputeProgram,
     eye: ComputeProgram,
+    eye_bounds: ScreenProgram,
     hybrid: ScreenProgram,
 }
 
@@ -72,19 +74,20 @@ const FARTHEST: wgpu::BlendState = {
 
 impl Programs {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let farthest = Raster::full_screen(wgpu::ColorTargetState {
+            format: BOUNDS_FORMAT,
+            blend: Some(FARTHEST),
+            write_mask: wgpu::ColorWrites::ALL,
+        });
         let boundary = |label, vertex, fragment| {
             let raster = Raster {
                 vertex,
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                target: wgpu::ColorTargetState {
-                    format: BOUNDS_FORMAT,
-                    blend: Some(FARTHEST),
-                    write_mask: wgpu::ColorWrites::ALL,
-                },
+                ..farthest.clone()
             };
             ScreenProgram::new(device, shared, label, &[VOLUME, BOUNDS], fragment, &own())
                 .drawing(raster)
         };
+        let eye_bounds_own = [layout::storage(0, true)];
         let eye_own = [
             &own()[..],
             &[layout::storage(3, false), layout::uniform::<EyeUniform>(4)],
@@ -104,8 +107,7 @@ impl Programs {
         let hybrid_own = [
             layout::uniform::<ParamsUniform>(0),
             layout::texels(1),
-            layout::storage(2, true),
-            layout::airlight(3),
+            layout::airlight(2),
         ];
         let modules = [AIRLIGHT, STRETCH, MARCH, HYBRID];
         Self {
@@ -116,6 +118,15 @@ impl Programs {
             },
             eye_clear: eye("eye_clear"),
             eye: eye("eye_triangle"),
+            eye_bounds: ScreenProgram::new(
+                device,
+                shared,
+                "hybrid eye bounds",
+                &[EYE_BOUNDS],
+                "eye_bounds",
+                &eye_bounds_own,
+            )
+            .drawing(farthest),
             hybrid: ScreenProgram::new(device, shared, "hybrid", &modules, "hybrid", &hybrid_own),
         }
     }
@@ -145,27 +156,33 @@ pub(crate) fn passes(
         pad: 0,
     };
     let uniform = scope.uniform("hybrid params", &uniform);
-    let eye = scope.storage("hybrid eye in shadow", 4);
     let mut bounds = scope.shared.absent.light.clone();
     let mut passes = Vec::new();
     if let Some(occluders) = occluders.filter(|occluders| !occluders.is_empty()) {
         count(occluders, scope);
         bounds = bounds_picture(scope);
         let places = Places::new("hybrid places", occluders, scope);
+        let eye = scope.storage("hybrid eye in shadow", 4);
         passes.push(eye_pass(occluders, &places, &eye, programs, scope));
+        let whole = Vertices::Direct {
+            vertices: 3,
+            instances: 0..1,
+        };
+        let from_eye = scope.draw_mesh(&programs.eye_bounds, &[eye.as_entire_binding()], whole);
+        let volumes = draws(occluders, &places, &programs.volumes, scope);
         passes.push(Pass {
             name: scope.pass_name("shadow volumes"),
             work: Work::Draw {
                 target: bounds.clone(),
-                draws: draws(occluders, &places, &programs.volumes, scope),
+                draws: std::iter::once(from_eye).chain(volumes).collect(),
             },
         });
+        scope.witness = Some(bounds.clone());
     }
     let airlight = scope.airlight();
     let resources = [
         uniform.as_entire_binding(),
         wgpu::BindingResource::TextureView(&bounds),
-        eye.as_entire_binding(),
         wgpu::BindingResource::TextureView(&airlight),
     ];
     passes.push(scope.full_screen(&programs.hybrid, "hybrid", &resources));

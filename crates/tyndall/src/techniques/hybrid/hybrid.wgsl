@@ -16,8 +16,7 @@ const HYBRID_PARALLEL: f32 = 0.999999;
 
 @group(2) @binding(0) var<uniform> hybrid_params: HybridParams;
 @group(2) @binding(1) var hybrid_bounds: texture_2d<f32>;
-@group(2) @binding(2) var<storage, read> hybrid_eye_in_shadow: u32;
-@group(2) @binding(3) var airlight_table: texture_2d_array<f32>;
+@group(2) @binding(2) var airlight_table: texture_2d_array<f32>;
 
 @fragment
 fn hybrid(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -43,13 +42,12 @@ fn hybrid_shaded(ray: Ray, bounds: vec2f) -> vec2f {
     if hybrid_params.bounds == HYBRID_UNKNOWN || (is_flat && runs_along) {
         return whole;
     }
-    // Rays that do not start in the eye may start in a shadow.
-    let starts_shaded = hybrid_eye_in_shadow != 0u || (is_flat && any(bounds > vec2f(0.0)));
-    if all(bounds == vec2f(0.0)) && !starts_shaded {
+    if all(bounds == vec2f(0.0)) {
         return vec2f(ray.length);
     }
-    // A ray that leaves a shadow entered it, and one that enters and does not leave ends there.
-    let front = select(saturate(1.0 - bounds.x), 0.0, starts_shaded || bounds.x == 0.0);
+    // A ray that leaves a shadow entered it, and one that enters and does not leave ends there. Rays that do not start in
+    // the eye may start in a shadow.
+    let front = select(saturate(1.0 - bounds.x), 0.0, is_flat || bounds.x == 0.0);
     let back = select(min(bounds.y, 1.0), 1.0, bounds.y == 0.0);
     return vec2f(front, back) * ray.length;
 }

@@ -17,7 +17,7 @@ use crate::{
     gpu::{
         layout,
         pass::{Pass, Vertices, Work},
-        program::{ComputeProgram, Raster, ScreenProgram},
+        program::{ComputeProgram, Raster, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, STRETCH},
     },
@@ -78,6 +78,7 @@ impl Programs {
                     blend: Some(ADD),
                     write_mask: wgpu::ColorWrites::ALL,
                 },
+                stencil: Stencil::Absent,
             };
             let wgsl = [AIRLIGHT, AIRLIGHT_TABLE, STRETCH, CUBE, MESH, SURFACE];
             let own = [
