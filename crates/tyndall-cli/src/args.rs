@@ -9,7 +9,7 @@ use tyndall::techniques::Technique;
 use crate::{
     bench::suite_names,
     layer::Layer,
-    shot::{Override, technique_names},
+    shot::{FrameRange, Override, technique_names},
 };
 
 /// Volumetric shadows in single-scattering media: fog, haze and air with shafts of light.
@@ -74,10 +74,10 @@ pub struct RenderArgs {
     /// Write adapter, parameters, milliseconds a pass and bytes as JSON
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
-    /// Render a sequence; OUT holds #### or %04d
+    /// Render a sequence, from frame A to frame B; OUT's name holds #### or %04d, where the frame's number goes
     #[arg(long, value_name = "A..B")]
-    pub frames: Option<String>,
-    /// Skip frames that exist
+    pub frames: Option<FrameRange>,
+    /// Skip frames whose files exist
     #[arg(long, requires = "frames")]
     pub resume: bool,
 }
@@ -88,9 +88,12 @@ Examples:
   tyndall render shot.toml -o shot.exr --layer inscatter --technique reference
   tyndall render shot.toml --set light.0.shadow_map=4096 --set medium.sigma_s=[0.1,0.1,0.1]
   tyndall render model.glb --set size=[1920,1080] --set camera.eye=[0,2,5] --exposure -1.5
+  tyndall render shot.toml --frames 0..59 -o frames/shot.####.png --resume
 
 A .png holds one layer: light is exposed and tone-mapped (Khronos PBR Neutral), transmittance is shown as it is.
-Depth in a .exr is the distance along the view ray in metres. Paths in a shot and in --set are relative to the shot's folder.";
+Depth in a .exr is the distance along the view ray in metres. Paths in a shot and in --set are relative to the shot's folder.
+Frames of a sequence are written whole or not at all. Give the shot `frames = \"A..B\"` in [animation] to render parts of it
+in several places: its keyframes, and the automatic exposure of its first frame, then hold for each part.";
 
 /// Arguments of `tyndall compare`.
 #[derive(Clone, Debug, Args)]

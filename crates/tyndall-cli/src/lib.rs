@@ -13,6 +13,7 @@ pub mod output;
 pub mod picture;
 pub mod progress;
 pub mod render;
+pub mod sequence;
 pub mod setup;
 pub mod shot;
 pub mod stats;

@@ -8,13 +8,50 @@ use indicatif::{ProgressBar, ProgressStyle};
 #[derive(Clone, Debug, Default)]
 pub struct Stages {
     times: Vec<(String, f64)>,
+    is_quiet: bool,
 }
 
 impl Stages {
+    /// Says nothing: for work inside a stage.
+    pub fn quiet() -> Self {
+        Self {
+            is_quiet: true,
+            ..Self::default()
+        }
+    }
+
+    /// Does `work` for each item, with a bar of how many are done and a line of what it says of each.
+    ///
+    /// # Errors
+    /// The first of the work's.
+    pub fn each<T, E>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        mut work: impl FnMut(&T) -> Result<String, E>,
+    ) -> Result<(), E> {
+        let bar = new_bar(name);
+        let start = Instant::now();
+        for (done, item) in items.iter().enumerate() {
+            bar.set_length(items.len() as u64);
+            bar.set_position(done as u64);
+            let line = work(item)?;
+            bar.suspend(|| eprintln!("{line}"));
+        }
+        bar.finish_and_clear();
+        self.times
+            .push((name.to_owned(), start.elapsed().as_secs_f64() * 1e3));
+        Ok(())
+    }
+
     /// Does a stage of work and says on standard error how long it took.
     /// The work reports units done and their total, from any thread.
     pub fn run<T>(&mut self, name: &str, work: impl FnOnce(&(dyn Fn(u64, u64) + Sync)) -> T) -> T {
-        let bar = new_bar(name);
+        let bar = if self.is_quiet {
+            ProgressBar::hidden()
+        } else {
+            new_bar(name)
+        };
         let start = Instant::now();
         let result = work(&|done, total| {
             bar.set_length(total);
@@ -22,7 +59,9 @@ impl Stages {
         });
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         bar.finish_and_clear();
-        eprintln!("{name}: {milliseconds:.0} ms");
+        if !self.is_quiet {
+            eprintln!("{name}: {milliseconds:.0} ms");
+        }
         self.times.push((name.to_owned(), milliseconds));
         result
     }

@@ -1,16 +1,16 @@
 //! From a shot to what the backends render: the scene, its acceleration structure, the frame and the lights' pictures.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use glam::Vec3;
 use tyndall::{
     cpu::LightTexture,
-    frame::{Camera, Frame, Light, Medium},
+    frame::{Camera, Emitter, Frame, Light, Medium},
 };
 use tyndall_scene::{
     builtin,
     framing::{self, Framing},
-    geometry::Bounds,
+    geometry::{Bounds, Geometry},
     load,
     scene::Scene,
     shadow_fit,
@@ -30,7 +30,7 @@ pub struct Setup {
     /// The scene.
     pub scene: Arc<Scene>,
     /// The scene, ready to be hit by rays.
-    pub tracer: Arc<Tracer>,
+    pub tracer: Arc<LazyTracer>,
     /// The frame. Its lights have shadow projections wherever maps of them can be made.
     pub frame: Frame,
     /// What belongs to each of the frame's lights.
@@ -38,6 +38,9 @@ pub struct Setup {
     /// Width and height [pixels].
     pub size: [u32; 2],
 }
+
+/// A tracer that is built when the first ray is cast: frames that the GPU draws cast none.
+pub type LazyTracer = LazyLock<Tracer, Box<dyn FnOnce() -> Tracer + Send>>;
 
 /// What belongs to a light besides its part of the frame.
 #[derive(Clone)]
@@ -73,35 +76,126 @@ pub fn load_scene(source: &SceneSource) -> Result<Scene, Failure> {
 }
 
 impl Setup {
-    /// Loads what the shot names and fills in what it leaves out.
+    /// Loads what the shot names and fills in what it leaves out; everything is at rest.
     ///
     /// # Errors
     /// [`Failure::Input`] where the scene or a picture can't be loaded, or the shot doesn't fit the scene.
     pub fn new(shot: &Shot, stages: &mut Stages) -> Result<Self, Failure> {
+        let source = Source::new(shot, stages)?;
+        let moment = source.moment(&source.scene).map_err(Failure::input)?;
+        let (scene, tracer) = (Arc::clone(&source.scene), Arc::clone(&source.tracer));
+        Ok(source.setup(scene, tracer, moment, source.tracer.geometry()))
+    }
+}
+
+/// What all frames of a shot share.
+pub(crate) struct Source {
+    shot: Shot,
+    /// The scene at rest.
+    pub(crate) scene: Arc<Scene>,
+    /// The same.
+    pub(crate) tracer: Arc<LazyTracer>,
+    framing: Option<Framing>,
+    lights: Vec<LightSetup>,
+}
+
+/// What may be another in each frame, besides the scene's nodes.
+pub(crate) struct Moment {
+    pub(crate) camera: Camera,
+    pub(crate) lights: Vec<LightSpec>,
+    pub(crate) medium: Medium,
+}
+
+impl Source {
+    /// Loads what the shot names.
+    ///
+    /// # Errors
+    /// As for [`Setup::new`].
+    pub(crate) fn new(shot: &Shot, stages: &mut Stages) -> Result<Self, Failure> {
         let scene = stages
             .run(&format!("load {}", shot.scene), |_| load_scene(&shot.scene))
             .map_err(|failure| at_scene(shot, failure))?;
-        let tracer = stages.run("build BVH", |_| Tracer::new(&scene));
-        let aspect = shot.size[0] as f32 / shot.size[1] as f32;
-        let framing = needs_framing(shot)
-            .then(|| stages.run("frame", |_| framing::frame_scene(&scene, &tracer, aspect)));
+        let tracer = stages.run("build BVH", |_| built(Tracer::new(&scene)));
+        let framing = needs_framing(shot).then(|| {
+            stages.run("frame", |_| {
+                framing::frame_scene(&scene, &tracer, aspect(shot))
+            })
+        });
         let specs = lights(shot, framing.as_ref()).map_err(Failure::input)?;
-        let frame = Frame {
-            camera: camera(shot, &scene, &tracer, framing.as_ref(), aspect)
-                .map_err(Failure::input)?,
-            lights: specs.iter().map(|spec| light(spec, &tracer)).collect(),
-            medium: medium(shot, framing.as_ref()).map_err(Failure::input)?,
-            technique: shot.technique.clone(),
-        };
-        let lights = specs.iter().map(load_light).collect::<Result<_, _>>()?;
         Ok(Self {
+            shot: shot.clone(),
             scene: Arc::new(scene),
             tracer: Arc::new(tracer),
-            frame,
-            lights,
-            size: shot.size,
+            framing,
+            lights: specs.iter().map(load_light).collect::<Result<_, _>>()?,
         })
     }
+
+    /// Camera, lights and medium, of which the scene's own are where its nodes are now.
+    pub(crate) fn moment(&self, scene: &Scene) -> Result<Moment, ShotError> {
+        let (shot, aspect) = (&self.shot, aspect(&self.shot));
+        let cameras = framing::cameras(scene, aspect);
+        let own_lights: Vec<Emitter> = framing::lights(scene)
+            .into_iter()
+            .map(|(_, light)| light)
+            .collect();
+        let framing = self.framing.as_ref().map(|framing| Framing {
+            camera: cameras
+                .first()
+                .map_or(framing.camera, |(_, camera)| *camera),
+            lights: if own_lights.is_empty() {
+                framing.lights.clone()
+            } else {
+                own_lights
+            },
+            medium: framing.medium.clone(),
+        });
+        let bounds = self.tracer.geometry().bounds();
+        let cameras = SceneCameras {
+            named: &cameras,
+            framed: framing.as_ref().map(|framing| framing.camera),
+            farthest: &|eye| bounds.map_or(0.0, |bounds| farthest(&bounds, eye.into())),
+        };
+        Ok(Moment {
+            camera: shot.camera.resolve(&cameras, aspect)?,
+            lights: lights(shot, framing.as_ref())?,
+            medium: medium(shot, framing.as_ref())?,
+        })
+    }
+
+    /// A frame of this moment. Shadow maps enclose `extent`.
+    pub(crate) fn setup(
+        &self,
+        scene: Arc<Scene>,
+        tracer: Arc<LazyTracer>,
+        moment: Moment,
+        extent: &Geometry,
+    ) -> Setup {
+        let lights = moment.lights.iter();
+        Setup {
+            scene,
+            tracer,
+            frame: Frame {
+                camera: moment.camera,
+                lights: lights.map(|spec| light(spec, extent)).collect(),
+                medium: moment.medium,
+                technique: self.shot.technique.clone(),
+            },
+            lights: self.lights.clone(),
+            size: self.shot.size,
+        }
+    }
+}
+
+/// A tracer that is there already.
+pub(crate) fn built(tracer: Tracer) -> LazyTracer {
+    let lazy: LazyTracer = LazyLock::new(Box::new(|| tracer));
+    LazyLock::force(&lazy);
+    lazy
+}
+
+fn aspect(shot: &Shot) -> f32 {
+    shot.size[0] as f32 / shot.size[1] as f32
 }
 
 /// Says where the shot names the scene, unless the scene itself was given.
@@ -136,22 +230,6 @@ fn medium(shot: &Shot, framing: Option<&Framing>) -> Result<Medium, ShotError> {
     }
 }
 
-fn camera(
-    shot: &Shot,
-    scene: &Scene,
-    tracer: &Tracer,
-    framing: Option<&Framing>,
-    aspect: f32,
-) -> Result<Camera, ShotError> {
-    let bounds = tracer.geometry().bounds();
-    let cameras = SceneCameras {
-        named: &framing::cameras(scene, aspect),
-        framed: framing.map(|framing| framing.camera),
-        farthest: &|eye| bounds.map_or(0.0, |bounds| farthest(&bounds, eye.into())),
-    };
-    shot.camera.resolve(&cameras, aspect)
-}
-
 fn farthest(bounds: &Bounds, eye: Vec3) -> f32 {
     (bounds.min - eye)
         .abs()
@@ -159,10 +237,10 @@ fn farthest(bounds: &Bounds, eye: Vec3) -> f32 {
         .length()
 }
 
-fn light(spec: &LightSpec, tracer: &Tracer) -> Light {
+fn light(spec: &LightSpec, extent: &Geometry) -> Light {
     Light {
         emitter: spec.emitter,
-        shadow: shadow_fit::fit(tracer.geometry(), &spec.emitter),
+        shadow: shadow_fit::fit(extent, &spec.emitter),
         texture: spec.texture.as_ref().map(|texture| texture.placement),
     }
 }

@@ -18,8 +18,10 @@ pub struct Stats<'a> {
     pub size: [u32; 2],
     /// What was asked for.
     pub layers: &'a [Layer],
-    /// What was rendered.
+    /// What was rendered; of a sequence the last frame.
     pub rendered: &'a Rendered,
+    /// The frames of a sequence, in order; empty of a single picture.
+    pub frames: &'a [FrameStats],
     /// Wall-clock milliseconds of each stage of the command, in order.
     pub stages: &'a [(String, f64)],
     /// Wall-clock milliseconds from the command's start to the written picture.
@@ -28,9 +30,37 @@ pub struct Stats<'a> {
     pub command: Vec<String>,
 }
 
+/// A frame of a sequence and its costs.
+pub struct FrameStats {
+    /// Its number.
+    pub frame: u32,
+    /// GPU passes and their milliseconds, in order.
+    pub passes: Vec<(String, f64)>,
+    /// What the technique counts.
+    pub counts: Vec<(String, u64)>,
+}
+
+impl FrameStats {
+    fn to_json(&self) -> Value {
+        json!({
+            "frame": self.frame,
+            "passes": times(&self.passes),
+            "counts": counts(&self.counts),
+        })
+    }
+}
+
 impl Stats<'_> {
     /// The report as JSON. Times are milliseconds.
     pub fn to_json(&self) -> Value {
+        let mut report = self.of_picture();
+        if !self.frames.is_empty() {
+            report["frames"] = self.frames.iter().map(FrameStats::to_json).collect();
+        }
+        report
+    }
+
+    fn of_picture(&self) -> Value {
         json!({
             "tyndall": env!("CARGO_PKG_VERSION"),
             "command": self.command,

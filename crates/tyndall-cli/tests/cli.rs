@@ -225,8 +225,16 @@ fn wrong_usage_exits_2_and_writes_nothing() {
             &["reference", "CPU only"],
         ),
         (
-            &["render", "shot.toml", "--frames", "0..9", "-o", "f####.png"],
-            &["--frames", "not there yet"],
+            &["render", "shot.toml", "--frames", "9..0", "-o", "f####.png"],
+            &["--frames", "A <= B", "9..0"],
+        ),
+        (
+            &["render", "shot.toml", "--frames", "0..9", "-o", "frame.png"],
+            &["frame.png", "#### or %04d"],
+        ),
+        (
+            &["render", "shot.toml", "--resume", "-o", "frame.png"],
+            &["--frames"],
         ),
         (
             &["compare", "shot.toml", "--techniques", "ray-march,magic"],
@@ -465,4 +473,120 @@ fn info_lists_techniques_with_their_parameters_and_what_a_scene_holds() {
     assert!(output.status.success(), "{}", stderr(&output));
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(text.contains("0 triangles"), "{text}");
+}
+
+/// The shot with a column that moves through the sun and a medium that grows thick.
+fn sequence() -> String {
+    let shot = SHOT.replace("builtin:empty", "builtin:slats");
+    format!(
+        "{shot}[animation]\nfps = 10\n[[animation.move]]\nnode = \"camera\"\ntranslate = [[0, 0, 0], [0, 0, -3]]\n\
+         [[animation.move]]\nnode = \"medium\"\ndensity = [1, 4]\n"
+    )
+}
+
+#[test]
+fn sequences_are_written_frame_by_frame_and_resumed() {
+    let folder = folder_with("shot.toml", sequence());
+    let render = |frames: &str, pattern: &str, more: &[&str]| {
+        let arguments = [
+            "render",
+            "shot.toml",
+            "--backend",
+            "cpu",
+            "--frames",
+            frames,
+            "-o",
+            pattern,
+        ];
+        let output = tyndall(folder.path(), &[&arguments, more].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output)
+    };
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    render("0..2", "a.###.png", &["--stats", "stats.json"]);
+    assert_eq!(
+        files(folder.path()),
+        [
+            "a.000.png",
+            "a.001.png",
+            "a.002.png",
+            "shot.toml",
+            "stats.json"
+        ]
+    );
+    let stats: serde_json::Value = serde_json::from_slice(&read("stats.json")).unwrap();
+    let numbers: Vec<_> = stats["frames"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| &f["frame"])
+        .collect();
+    assert_eq!(numbers, [0, 1, 2]);
+    let [first, second, third] = ["a.000.png", "a.001.png", "a.002.png"].map(read);
+    assert!(first != second && second != third);
+
+    // A missing frame is made again, bit by bit the same; the others stay as they are.
+    std::fs::write(folder.path().join("a.000.png"), "kept").unwrap();
+    std::fs::remove_file(folder.path().join("a.001.png")).unwrap();
+    let said = render("0..2", "a.###.png", &["--resume"]);
+    assert!(said.contains("2 skipped"), "{said}");
+    assert_eq!(read("a.000.png"), b"kept");
+    assert_eq!(read("a.001.png"), second);
+    let said = render("0..2", "a.###.png", &["--resume"]);
+    assert!(said.contains("3 skipped"), "{said}");
+
+    // Parts of a sequence whose range the shot gives are the same wherever they are made.
+    let ranged = sequence().replace("fps = 10", "fps = 10\nframes = \"0..2\"");
+    std::fs::write(folder.path().join("shot.toml"), ranged).unwrap();
+    render("1..1", "b%03d.png", &[]);
+    assert_eq!(read("b001.png"), second);
+}
+
+#[test]
+fn sequences_are_alike_on_gpu_and_cpu() {
+    if device::device_or_skip("sequences on the GPU").is_none() {
+        return;
+    }
+    let folder = folder_with("shot.toml", sequence());
+    let [gpu, cpu] = ["gpu", "cpu"].map(|backend| {
+        let pattern = format!("{backend}#.exr");
+        let arguments = [
+            "render",
+            "shot.toml",
+            "--backend",
+            backend,
+            "--frames",
+            "1..2",
+            "-o",
+            &pattern,
+            "--layer",
+            "inscatter",
+            "--technique",
+            "ray-march",
+            "--set",
+            "light.0.shadow_map=128",
+        ];
+        let output = tyndall(folder.path(), &arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        [1, 2].map(|frame| {
+            Picture::read_exr(&folder.path().join(format!("{backend}{frame}.exr"))).unwrap()
+        })
+    });
+    for (gpu, cpu) in gpu.iter().zip(&cpu) {
+        let error = compare(gpu, cpu).unwrap().rel_mae;
+        assert!(error < 0.01, "{error}");
+    }
+}
+
+#[test]
+fn what_moves_must_be_there() {
+    let shot = sequence().replace("\"camera\"\ntranslate", "\"dragon\"\ntranslate");
+    let folder = folder_with("shot.toml", shot);
+    let output = tyndall(folder.path(), &["render", "shot.toml", "--frames", "0..1"]);
+    assert_fails(
+        &output,
+        1,
+        &["shot.toml:19", "animation.move.0.node", "\"dragon\""],
+    );
+    assert_eq!(files(folder.path()), ["shot.toml"]);
 }

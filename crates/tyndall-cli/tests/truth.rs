@@ -16,7 +16,8 @@ use tyndall_testkit::{device, skip};
 struct Bounds {
     shot: &'static str,
     reference: f64,
-    /// Of 2048 steps; `None` where the light's kind is not for `ray-march`.
+    /// Of 2048 steps, and of `hybrid`, which takes the same between closed forms; `None` where the light's kind is not
+    /// for them.
     ray_march: Option<f64>,
     /// `None` where the light is not for `light-volume`.
     light_volume: Option<f64>,
@@ -83,11 +84,19 @@ fn trials() -> Vec<Trial> {
                 format!("{}::ray_march", bounds.shot),
                 move || with_shot(bounds, |shot| ray_march(shot, bound)),
             ));
+            trials.push(Trial::ignorable_test(
+                format!("{}::hybrid", bounds.shot),
+                move || {
+                    with_shot(bounds, |shot| {
+                        on_gpu(shot, "hybrid", &["--set", STEPS], bound)
+                    })
+                },
+            ));
         }
         if let Some(bound) = bounds.light_volume {
             trials.push(Trial::ignorable_test(
                 format!("{}::light_volume", bounds.shot),
-                move || with_shot(bounds, |shot| light_volume(shot, bound)),
+                move || with_shot(bounds, |shot| on_gpu(shot, "light-volume", &[], bound)),
             ));
         }
     }
@@ -147,11 +156,16 @@ fn ray_march(shot: &TruthShot, bound: f64) -> Result<Completion, Failed> {
     }
 }
 
-fn light_volume(shot: &TruthShot, bound: f64) -> Result<Completion, Failed> {
+fn on_gpu(
+    shot: &TruthShot,
+    technique: &str,
+    more: &[&str],
+    bound: f64,
+) -> Result<Completion, Failed> {
     match device::device() {
         Ok(_) => {
-            let picture = render(shot, &["--technique", "light-volume"])?;
-            check(shot, "light-volume", &picture, &shot.in_scatter()?, bound)?;
+            let picture = render(shot, &[&["--technique", technique], more].concat())?;
+            check(shot, technique, &picture, &shot.in_scatter()?, bound)?;
             Ok(Completion::Completed)
         }
         Err(missing) if missing.is_excused() => {

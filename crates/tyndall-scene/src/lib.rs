@@ -1,5 +1,6 @@
 //! Scenes for `tyndall`.
 
+pub mod animation;
 pub mod builtin;
 pub mod framing;
 pub mod geometry;

@@ -3,6 +3,8 @@
 use glam::{Affine3A, Vec2, Vec3};
 use tyndall::frame::{Emitter, Projection};
 
+use crate::animation::NodeAnimation;
+
 /// A scene. Everything refers to everything else by index; all indices are valid (the loaders check them).
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
@@ -16,6 +18,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Its pictures.
     pub textures: Vec<Texture>,
+    /// What moves its nodes, at most one entry a node; they are at rest unless [`pose`](crate::animation::pose)d.
+    pub animations: Vec<NodeAnimation>,
 }
 
 /// A node of the hierarchy: a place, and what is there.

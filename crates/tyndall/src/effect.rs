@@ -1,5 +1,7 @@
 //! The effect in somebody's renderer: created once a device, prepared and recorded once a frame.
 
+use std::sync::OnceLock;
+
 use crate::{
     camera::CameraRays,
     composite::Composite,
@@ -12,7 +14,9 @@ use crate::{
         scope::{LightScope, Shared},
         uniforms::{FrameUniform, LightUniform},
     },
+    occluder::Occluder,
     techniques::{Backends, Programs},
+    temporal::{self, History, Reuse, ReuseMask, Signature},
     validate,
 };
 
@@ -83,6 +87,9 @@ pub struct LightInputs<'a> {
     pub glass: Option<&'a wgpu::TextureView>,
     /// The light's texture: 2-D, filterable, linear when read.
     pub texture: Option<&'a wgpu::TextureView>,
+    /// All that may block this light, as triangles, for techniques that bound shadows by geometry (`hybrid`); `None`: not
+    /// known.
+    pub occluders: Option<&'a [Occluder<'a>]>,
     /// A number that changes whenever the shadow map's content does: what a technique made of the map alone for the
     /// frame before, if that was recorded and submitted, is used again. `None`: the map may change from frame to frame.
     pub shadow_revision: Option<u64>,
@@ -115,6 +122,7 @@ pub enum CountValue {
 pub struct Effect {
     shared: Shared,
     programs: Programs,
+    reuse: OnceLock<temporal::gpu::Programs>,
     composite: Composite,
 }
 
@@ -124,6 +132,8 @@ pub struct EffectView {
     pool: Pool,
     passes: Vec<Pass>,
     counts: Vec<Count>,
+    reuse: Option<Reuse>,
+    history: History,
     /// Whether the frame prepared last was recorded.
     is_recorded: bool,
     output: wgpu::TextureView,
@@ -148,6 +158,7 @@ impl Effect {
         let shared = Shared::new(device, options.output.format());
         Ok(Self {
             programs: Programs::default(),
+            reuse: OnceLock::new(),
             composite: Composite::new(device, &shared.frame_layout, format),
             shared,
         })
@@ -173,6 +184,8 @@ impl Effect {
             pool,
             passes: Vec::new(),
             counts: Vec::new(),
+            reuse: None,
+            history: History::default(),
             is_recorded: false,
             output,
             composite: None,
@@ -207,22 +220,29 @@ impl Effect {
             frame
                 .technique
                 .check_gpu(&device.limits(), view.size, i, light, light_inputs)?;
+            if let Some(reuse) = &view.reuse {
+                let limits = device.limits();
+                temporal::gpu::check(reuse, &limits, view.size, i, light, light_inputs)?;
+            }
         }
 
         let rays = CameraRays::new(&frame.camera, view.size);
         let uniform = FrameUniform::new(frame, &rays, view.size);
         view.pool.begin(view.is_recorded);
-        let frame_uniform = view.pool.uniform(device, queue, (None, "frame"), &uniform);
+        view.history.begin(lights.len(), view.is_recorded);
+        let frame_uniform_buffer = view.pool.uniform(device, queue, (None, "frame"), &uniform);
         let (mut passes, mut counts) = (Vec::new(), Vec::new());
         let mut before = self.shared.absent.light.clone();
         for (i, (light, light_inputs)) in lights.iter().enumerate() {
             let layers = light_inputs.glass.map(|glass| glass_layers(light, glass));
-            let (uniform, variant) = LightUniform::new(light, rays.eye, layers);
-            let uniform = view
+            let (light_uniform, variant) = LightUniform::new(light, rays.eye, layers);
+            let buffer = view
                 .pool
-                .uniform(device, queue, (Some(i), "light"), &uniform);
+                .uniform(device, queue, (Some(i), "light"), &light_uniform);
             // The sum of the lights goes to and fro between two pictures; the second is made with the second light.
             let target = self.sum(device, &mut view.pool, view.size, i % 2);
+            let frame_group =
+                self.frame_group(device, &frame_uniform_buffer, inputs.depth, &before);
             let mut scope = LightScope {
                 device,
                 queue,
@@ -235,19 +255,31 @@ impl Effect {
                 light,
                 inputs: *light_inputs,
                 variant,
-                frame_group: self.frame_group(device, &frame_uniform, inputs.depth, &before),
-                light_group: self.light_group(device, &uniform, light_inputs),
+                frame_group,
+                light_group: self.light_group(device, &buffer, light_inputs),
                 target: target.clone(),
+                stencil: None,
+                witness: None,
                 counts: &mut counts,
             };
-            passes.extend(frame.technique.passes(&self.programs, &mut scope));
+            match view.reuse {
+                None => passes.extend(frame.technique.passes(&self.programs, &mut scope)),
+                Some(reuse) => {
+                    let absent = &self.shared.absent.light;
+                    let alone =
+                        self.frame_group(device, &frame_uniform_buffer, inputs.depth, absent);
+                    let signature = (&uniform, &light_uniform, reuse);
+                    passes.extend(self.keep(&mut view.history, &mut scope, alone, signature));
+                }
+            }
             before = target;
         }
         view.pool.end();
         view.passes = passes;
         view.counts = counts;
         view.is_recorded = false;
-        view.composite = Some(self.frame_group(device, &frame_uniform, inputs.depth, &before));
+        view.composite =
+            Some(self.frame_group(device, &frame_uniform_buffer, inputs.depth, &before));
         view.output = before;
         Ok(())
     }
@@ -271,6 +303,40 @@ impl Effect {
         if let Some(frame) = &view.composite {
             self.composite.draw(pass, frame);
         }
+    }
+
+    /// The passes of one light that is kept from frame to frame. `alone` is bind group 0 without the lights before.
+    fn keep(
+        &self,
+        history: &mut History,
+        scope: &mut LightScope<'_>,
+        alone: wgpu::BindGroup,
+        (frame, light, reuse): (&FrameUniform, &LightUniform, Reuse),
+    ) -> Vec<Pass> {
+        let technique = &scope.frame.technique;
+        let make = || temporal::gpu::Programs::new(scope.device, &self.shared);
+        let programs = self.reuse.get_or_init(make);
+        let inputs = &scope.inputs;
+        let signature = Signature::new(frame, light, scope.variant, technique, reuse.mask, inputs);
+        let moved = match reuse.mask {
+            ReuseMask::Change => Vec::new(),
+            ReuseMask::Geometry => history.moved(scope.index, inputs.occluders.unwrap_or_default()),
+        };
+        let frame = temporal::gpu::Frame {
+            reuse,
+            generation: history.generation(scope.index, signature),
+            reach: technique.reach(),
+            moved: &moved,
+        };
+        let kept = temporal::gpu::kept(scope);
+        let sum = std::mem::replace(&mut scope.target, kept.clone());
+        let with_lights_before = std::mem::replace(&mut scope.frame_group, alone);
+        scope.stencil = Some(temporal::gpu::stencil(scope));
+        let passes = technique.passes(&self.programs, scope);
+        let mut passes = temporal::gpu::wrap(passes, &frame, programs, scope);
+        scope.frame_group = with_lights_before;
+        passes.push(temporal::gpu::add(&frame, &kept, sum, programs, scope));
+        passes
     }
 
     fn frame_group(
@@ -336,6 +402,11 @@ impl EffectView {
     /// The view may be another one after `prepare` with another number of lights.
     pub fn output(&self) -> &wgpu::TextureView {
         &self.output
+    }
+
+    /// What is kept of earlier frames from now on; `None`, as at first: nothing.
+    pub fn set_reuse(&mut self, reuse: Option<Reuse>) {
+        self.reuse = reuse;
     }
 
     /// The passes of the frame prepared last.

@@ -20,6 +20,7 @@
 //! | [`min-max`](techniques::min_max) | 1-D min-max mipmaps over epipolar slices, lit stretches in closed form | directional, point, spot | GPU, CPU |
 //! | [`light-volume`](techniques::light_volume) | the shadow map as a closed mesh, drawn additively with signed airlight | directional, point, spot, without textures | GPU |
 //! | [`epipolar`](techniques::epipolar_sampling) | few rays marched along epipolar lines with 1-D min/max trees, the rest interpolated | directional, point, spot | GPU |
+//! | [`hybrid`](techniques::hybrid) | silhouette shadow volumes bound the shadows: closed forms outside, steps between | directional, point, spot | GPU |
 //! | [`incremental`](techniques::incremental) | partial sums over epipolar slices, rays in order of their angle | directional, point, without textures | CPU |
 //! | [`reference`](techniques::reference) | exact visibility and f64 quadrature to a stated tolerance | directional, point, spot, rectangle | CPU |
 //!
@@ -95,9 +96,13 @@ pub mod frame;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod light;
+#[cfg(feature = "gpu")]
+mod occluder;
 pub mod physics;
 pub mod shadow;
 pub mod techniques;
+#[cfg(feature = "gpu")]
+pub mod temporal;
 mod validate;
 
 #[cfg(feature = "gpu")]
@@ -106,3 +111,5 @@ pub use effect::{
     OutputPrecision,
 };
 pub use error::PrepareError;
+#[cfg(feature = "gpu")]
+pub use occluder::{Occluder, OccluderError, OccluderMesh};

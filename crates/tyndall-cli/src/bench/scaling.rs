@@ -18,7 +18,7 @@ use crate::{
     failure::Failure,
     measure::{Budget, Stage, Timing},
     progress::Stages,
-    setup::Setup,
+    setup::{Setup, built},
     shot::Shot,
 };
 
@@ -165,7 +165,7 @@ fn subdivided(setup: &Setup, times: u32) -> Setup {
         }
     }
     Setup {
-        tracer: Arc::new(Tracer::new(&scene)),
+        tracer: Arc::new(built(Tracer::new(&scene))),
         scene: Arc::new(scene),
         ..setup.clone()
     }

@@ -9,62 +9,186 @@ use crate::{
     args::RenderArgs,
     failure::Failure,
     layer::{Layer, Layers},
-    output::{Format, check_folder, write_atomically},
+    output::{Format, Pattern, check_folder, write_atomically},
     picture::automatic_exposure,
     progress::Stages,
-    render::{self, Backend},
+    render::{self, Backend, Rendered, Session},
+    sequence::Sequence,
     setup::Setup,
-    shot::Shot,
-    stats::Stats,
+    shot::{FrameRange, Shot},
+    stats::{FrameStats, Stats},
 };
 
 pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let start = Instant::now();
-    if args.frames.is_some() {
-        return Err(Failure::not_there_yet("--frames"));
+    let job = Job::new(args)?;
+    match args.frames {
+        Some(frames) => job.render_sequence(frames),
+        None => job.render_picture(),
     }
-    let layers = distinct(&args.layers);
-    let given = args.output.as_deref();
-    let format = given
-        .map_or(Ok(Format::Png), |file| Format::of(file, &layers))
-        .map_err(Failure::usage)?;
-    let shot = Shot::load(&args.input, args.technique.as_deref(), &args.overrides)
-        .map_err(Failure::input)?;
-    let output = given.map_or_else(|| PathBuf::from(format!("{}.png", shot.name())), Into::into);
-    Format::of(&output, &layers).map_err(Failure::usage)?;
-    for file in std::iter::once(&output).chain(&args.stats) {
-        check_folder(file).map_err(Failure::input)?;
-    }
-    if shot.temporal.is_some() || shot.animation.is_some() {
-        eprintln!("note: the shot is a sequence; its first frame is rendered");
+}
+
+/// What the command line asks for, checked as far as it can be before any work is done.
+struct Job<'a> {
+    args: &'a RenderArgs,
+    start: Instant,
+    layers: Vec<Layer>,
+    format: Format,
+    output: PathBuf,
+    shot: Shot,
+}
+
+impl<'a> Job<'a> {
+    fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
+        let start = Instant::now();
+        let layers = distinct(&args.layers);
+        let given = args.output.as_deref();
+        if let Some(file) = given {
+            Format::of(file, &layers).map_err(Failure::usage)?;
+            if args.frames.is_some() {
+                Pattern::of(file).map_err(Failure::usage)?;
+            }
+        }
+        let shot = Shot::load(&args.input, args.technique.as_deref(), &args.overrides)
+            .map_err(Failure::input)?;
+        let number = args.frames.map_or("", |_| ".####");
+        let default = || PathBuf::from(format!("{}{number}.png", shot.name()));
+        let output = given.map_or_else(default, Into::into);
+        let format = Format::of(&output, &layers).map_err(Failure::usage)?;
+        for file in std::iter::once(&output).chain(&args.stats) {
+            check_folder(file).map_err(Failure::input)?;
+        }
+        Ok(Self {
+            args,
+            start,
+            layers,
+            format,
+            output,
+            shot,
+        })
     }
 
-    let mut stages = Stages::default();
-    let backend = Backend::choose(args.backend, shot.technique.info())?;
-    let setup = Setup::new(&shot, &mut stages)?;
-    let rendered = render::render(&setup, &backend, &layers, &mut stages)?;
-    let ev = match format {
-        Format::Png => exposure(args.exposure, &rendered.layers),
-        Format::Exr => 0.0,
-    };
-    format
-        .write(&output, &rendered.layers, ev)
-        .map_err(Failure::input)?;
-    eprintln!("wrote {}", output.display());
-    if let Some(file) = &args.stats {
+    fn backend(&self) -> Result<Backend, Failure> {
+        Backend::choose(self.args.backend, self.shot.technique.info())
+    }
+
+    fn render_picture(&self) -> Result<(), Failure> {
+        let mut stages = Stages::default();
+        let backend = self.backend()?;
+        let setup = match &self.shot.animation {
+            None => Setup::new(&self.shot, &mut stages)?,
+            Some(animation) => {
+                let frames = animation.frames.unwrap_or(FrameRange { first: 0, last: 0 });
+                let first = frames.first;
+                eprintln!("note: the shot is a sequence; its frame {first} is rendered");
+                Sequence::new(&self.shot, frames, &mut stages)?.at(first)?
+            }
+        };
+        let rendered = render::render(&setup, &backend, &self.layers, &mut stages)?;
+        let ev = self.exposure(&rendered.layers);
+        self.write(&self.output, &rendered.layers, ev)?;
+        eprintln!("wrote {}", self.output.display());
+        self.write_stats(&backend, Some(&rendered), &[], &stages)
+    }
+
+    fn render_sequence(&self, frames: FrameRange) -> Result<(), Failure> {
+        let pattern = Pattern::of(&self.output).map_err(Failure::usage)?;
+        let wanted: Vec<u32> = frames
+            .frames()
+            .filter(|frame| !(self.args.resume && pattern.file(*frame).exists()))
+            .collect();
+        let skipped = frames.frames().count() - wanted.len();
+        if skipped > 0 {
+            eprintln!("frames {frames}: {skipped} skipped, their files exist");
+        }
+        let Some(&first_wanted) = wanted.first() else {
+            return Ok(());
+        };
+        let mut stages = Stages::default();
+        let backend = self.backend()?;
+        let mut sequence = Sequence::new(&self.shot, frames, &mut stages)?;
+        let setup = sequence.at(first_wanted)?;
+        let mut session = Session::new(&setup, &backend, &self.layers, &mut stages)?;
+        drop(setup);
+        let mut ev = None;
+        let mut done = Vec::new();
+        let mut last = None;
+        stages.each(&format!("frames {frames}"), &wanted, |&frame| {
+            let ev = match ev {
+                Some(ev) => ev,
+                None => *ev.insert(self.first_exposure(&mut sequence, &mut session)?),
+            };
+            let start = Instant::now();
+            let rendered = session.render(&sequence.at(frame)?, &mut Stages::quiet())?;
+            let file = pattern.file(frame);
+            self.write(&file, &rendered.layers, ev)?;
+            done.push(FrameStats {
+                frame,
+                passes: rendered.passes.clone(),
+                counts: rendered.counts.clone(),
+            });
+            last = Some(rendered);
+            let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+            Ok(format!("wrote {}: {milliseconds:.0} ms", file.display()))
+        })?;
+        self.write_stats(&backend, last.as_ref(), &done, &stages)
+    }
+
+    /// The exposure of all frames of a sequence [EV]: that of its first, for one that follows each frame flickers.
+    fn first_exposure(
+        &self,
+        sequence: &mut Sequence,
+        session: &mut Session<'_>,
+    ) -> Result<f32, Failure> {
+        if self.args.exposure.is_some() || self.format == Format::Exr {
+            return Ok(self.args.exposure.unwrap_or_default());
+        }
+        let first = sequence.at(sequence.range().first)?;
+        let rendered = session.render(&first, &mut Stages::quiet())?;
+        Ok(self.exposure(&rendered.layers))
+    }
+
+    /// The exposure of a PNG [EV]; says the automatic one, so that it can be given next time.
+    fn exposure(&self, layers: &Layers) -> f32 {
+        match (self.format, self.args.exposure, layers.first()) {
+            (Format::Exr, ..) => 0.0,
+            (Format::Png, Some(ev), _) => ev,
+            (_, _, Some((Layer::Final | Layer::Inscatter | Layer::Surface, picture))) => {
+                let ev = automatic_exposure(picture);
+                eprintln!("exposure: {ev:.2} EV (automatic)");
+                ev
+            }
+            _ => 0.0,
+        }
+    }
+
+    fn write(&self, file: &Path, layers: &Layers, ev: f32) -> Result<(), Failure> {
+        self.format.write(file, layers, ev).map_err(Failure::input)
+    }
+
+    fn write_stats(
+        &self,
+        backend: &Backend,
+        rendered: Option<&Rendered>,
+        frames: &[FrameStats],
+        stages: &Stages,
+    ) -> Result<(), Failure> {
+        let (Some(file), Some(rendered)) = (&self.args.stats, rendered) else {
+            return Ok(());
+        };
         let stats = Stats {
             adapter: backend.adapter(),
-            technique: &shot.technique,
-            size: shot.size,
-            layers: &layers,
-            rendered: &rendered,
+            technique: &self.shot.technique,
+            size: self.shot.size,
+            layers: &self.layers,
+            rendered,
+            frames,
             stages: stages.times(),
-            total: start.elapsed().as_secs_f64() * 1e3,
+            total: self.start.elapsed().as_secs_f64() * 1e3,
             command: std::env::args().collect(),
         };
-        write_stats(file, &stats)?;
+        let text = format!("{:#}\n", stats.to_json());
+        write_atomically(file, text.as_bytes()).map_err(Failure::input)
     }
-    Ok(())
 }
 
 /// Each layer once, in the order of the command line.
@@ -76,22 +200,4 @@ fn distinct(layers: &[Layer]) -> Vec<Layer> {
         }
     }
     seen
-}
-
-/// The exposure of a PNG [EV]; says the automatic one, so that it can be given next time.
-fn exposure(fixed: Option<f32>, layers: &Layers) -> f32 {
-    match (fixed, layers.first()) {
-        (Some(ev), _) => ev,
-        (None, Some((Layer::Final | Layer::Inscatter | Layer::Surface, picture))) => {
-            let ev = automatic_exposure(picture);
-            eprintln!("exposure: {ev:.2} EV (automatic)");
-            ev
-        }
-        (None, _) => 0.0,
-    }
-}
-
-fn write_stats(file: &Path, stats: &Stats<'_>) -> Result<(), Failure> {
-    let text = format!("{:#}\n", stats.to_json());
-    write_atomically(file, text.as_bytes()).map_err(Failure::input)
 }

@@ -3,7 +3,7 @@
 use std::{borrow::Cow, time::Instant};
 
 use tyndall::{
-    Effect, EffectView, FrameInputs,
+    Effect, EffectView, FrameInputs, Occluder,
     frame::{Camera, Frame},
     techniques::Technique,
 };
@@ -35,6 +35,7 @@ pub(super) struct DeviceStage<'a> {
 pub(super) struct DeviceTechnique<'a> {
     stage: &'a DeviceStage<'a>,
     frame: Frame,
+    occluders: Option<Vec<Occluder<'a>>>,
     view: EffectView,
     /// What the technique is told of the shadow maps, which never change here.
     shadow_revision: Option<u64>,
@@ -93,6 +94,7 @@ impl<'a> DeviceStage<'a> {
         let view = self.effect.create_view(&self.gpu.device, self.setup.size);
         Ok(DeviceTechnique {
             stage: self,
+            occluders: self.world.occluders(&self.setup, technique, self.gpu)?,
             frame: Frame {
                 technique: technique.clone(),
                 ..self.setup.frame.clone()
@@ -142,12 +144,13 @@ impl DeviceTechnique<'_> {
         let Self {
             stage,
             frame,
+            occluders,
             view,
             shadow_revision,
             timestamps,
         } = self;
         stage.frame(timestamps, |encoder, timestamps| {
-            let mut lights = stage.world.light_inputs();
+            let mut lights = stage.world.light_inputs(occluders.as_deref());
             for light in &mut lights {
                 light.shadow_revision = *shadow_revision;
             }

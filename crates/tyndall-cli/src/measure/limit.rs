@@ -19,7 +19,7 @@ impl Limit {
         let format = TextureFormat::Rgba32Float;
         let pipeline = pipeline(device, format);
         let depth = world.g_buffer().depth();
-        let lights = world.light_inputs();
+        let lights = world.light_inputs(None);
         let maps = lights.iter().filter_map(|light| light.shadow_map);
         Self {
             lights: maps

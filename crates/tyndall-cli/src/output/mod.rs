@@ -1,6 +1,7 @@
 //! Output files: what they hold by their ending, written whole or not at all.
 
 mod exr;
+mod pattern;
 mod png;
 
 use std::{
@@ -11,6 +12,8 @@ use std::{
 use tempfile::NamedTempFile;
 
 use crate::layer::{Layer, Layers};
+
+pub use pattern::{Pattern, PatternError};
 
 /// What a file holds, by its ending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

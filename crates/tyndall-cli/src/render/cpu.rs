@@ -169,7 +169,7 @@ pub(crate) fn in_scatter(
         size: setup.size,
         depth,
         lights,
-        occluders: Some(&*setup.tracer),
+        occluders: Some(&**setup.tracer),
     };
     let result = tyndall::cpu::render(&frame, &inputs, progress);
     Ok(rgb(&result.map_err(Failure::input)?.pixels))

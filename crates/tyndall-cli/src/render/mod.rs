@@ -44,10 +44,48 @@ pub fn render(
     layers: &[Layer],
     stages: &mut Stages,
 ) -> Result<Rendered, Failure> {
-    let needs = Needs::of(layers, &setup.frame.technique);
-    match backend {
-        Backend::Cpu => cpu::render(setup, needs, layers, stages),
-        Backend::Gpu(gpu) => gpu::render(setup, gpu, needs, layers, stages),
+    Session::new(setup, backend, layers, stages)?.render(setup, stages)
+}
+
+/// What renders frame after frame of a shot.
+pub struct Session<'a> {
+    layers: &'a [Layer],
+    needs: Needs,
+    pipeline: Option<gpu::Pipeline<'a>>,
+}
+
+impl<'a> Session<'a> {
+    /// Gets ready for frames that differ from this one in nodes' places, camera, lights' places and medium alone.
+    ///
+    /// # Errors
+    /// As for [`render`].
+    pub fn new(
+        setup: &Setup,
+        backend: &'a Backend,
+        layers: &'a [Layer],
+        stages: &mut Stages,
+    ) -> Result<Self, Failure> {
+        let needs = Needs::of(layers, &setup.frame.technique);
+        let pipeline = match backend {
+            Backend::Cpu => None,
+            Backend::Gpu(gpu) => Some(gpu::Pipeline::new(setup, gpu, needs, stages)?),
+        };
+        Ok(Self {
+            layers,
+            needs,
+            pipeline,
+        })
+    }
+
+    /// Renders the layers of a frame.
+    ///
+    /// # Errors
+    /// As for [`render`].
+    pub fn render(&mut self, setup: &Setup, stages: &mut Stages) -> Result<Rendered, Failure> {
+        match &mut self.pipeline {
+            None => cpu::render(setup, self.needs, self.layers, stages),
+            Some(pipeline) => pipeline.render(setup, self.layers, stages),
+        }
     }
 }
 
@@ -87,6 +125,10 @@ pub(crate) fn reads_shadow_maps(technique: &Technique) -> bool {
             ..
         })
     )
+}
+
+fn reads_occluders(technique: &Technique) -> bool {
+    matches!(technique, Technique::Hybrid(_))
 }
 
 /// Length of each pixel's view ray [m].

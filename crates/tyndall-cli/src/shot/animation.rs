@@ -1,7 +1,9 @@
 //! `[temporal]` and `[animation]`: what only sequences use.
 
+use std::{fmt, str::FromStr};
+
 use super::{
-    error::ShotError,
+    error::{Location, ShotError},
     reader::{Field, Section},
 };
 
@@ -17,24 +19,97 @@ pub struct Temporal {
 pub struct Animation {
     /// Frames a second (> 0).
     pub fps: f32,
+    /// The frames that keyframes are spread over; `None`: those that are rendered.
+    pub frames: Option<FrameRange>,
     /// The movements.
     pub moves: Vec<Move>,
 }
 
-/// The movement of a node, of `camera`, or of a light such as `light.0`; keyframes are spread over the frame range.
+impl Default for Animation {
+    /// Nothing but what the scene's own animations move.
+    fn default() -> Self {
+        Self {
+            fps: DEFAULT_FPS,
+            frames: None,
+            moves: Vec::new(),
+        }
+    }
+}
+
+/// A movement; keyframes are spread evenly over the frame range, with straight lines between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
     /// What moves.
-    pub node: String,
+    pub target: MoveTarget,
+    /// Where the shot names it.
+    pub location: Location,
     /// Offsets from where it stands [m].
     pub translate: Vec<[f32; 3]>,
-    /// Rotations about x, y and z [degrees].
+    /// Rotations about x, then y, then z, through where it stands [degrees].
     pub rotate_deg: Vec<[f32; 3]>,
+    /// Factors of the medium's coefficients (>= 0).
+    pub density: Vec<f32>,
+}
+
+/// What a [`Move`] moves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MoveTarget {
+    /// Every node of this name, along its parent's axes.
+    Node(String),
+    /// The camera, along the world's axes.
+    Camera,
+    /// The light of this index, with its picture, along the world's axes.
+    Light(usize),
+    /// The medium, which fills all space and can only change its density.
+    Medium,
+}
+
+/// Frames from the first to the last, both included.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRange {
+    /// The first frame.
+    pub first: u32,
+    /// The last frame (>= `first`).
+    pub last: u32,
+}
+
+impl FrameRange {
+    /// Its frames in order.
+    pub fn frames(self) -> std::ops::RangeInclusive<u32> {
+        self.first..=self.last
+    }
+
+    /// How far into the range a frame is, from 0 at the first to 1 at the last; frames outside are taken to its ends.
+    pub fn progress(self, frame: u32) -> f32 {
+        let done = f64::from(frame.clamp(self.first, self.last) - self.first);
+        (done / f64::from((self.last - self.first).max(1))) as f32
+    }
+}
+
+impl FromStr for FrameRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once("..").and_then(|(first, last)| {
+            let (first, last) = (first.parse().ok()?, last.parse().ok()?);
+            (first <= last).then_some(Self { first, last })
+        });
+        numbers.ok_or_else(|| format!("expected {FRAMES}, found {text:?}"))
+    }
+}
+
+impl fmt::Display for FrameRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}..{}", self.first, self.last)
+    }
 }
 
 /// The most frames that `temporal.reuse` may span.
 const MAX_REUSE: u32 = 64;
 const DEFAULT_REUSE: u32 = 3;
+const DEFAULT_FPS: f32 = 30.0;
+const FRAMES: &str = "the first and the last frame as A..B, two whole numbers with A <= B";
+const TARGET: &str = "a node's name, camera, medium, or a light such as light.0";
 
 /// Reads `[temporal]`.
 pub(super) fn read_temporal(field: &Field<'_>) -> Result<Temporal, ShotError> {
@@ -48,7 +123,7 @@ pub(super) fn read_temporal(field: &Field<'_>) -> Result<Temporal, ShotError> {
 /// Reads `[animation]`.
 pub(super) fn read_animation(field: &Field<'_>) -> Result<Animation, ShotError> {
     let section = field.section()?;
-    section.only(&["fps", "move"])?;
+    section.only(&["fps", "frames", "move"])?;
     let expected = "a number > 0";
     let fps = section
         .require("fps", expected)?
@@ -61,22 +136,70 @@ pub(super) fn read_animation(field: &Field<'_>) -> Result<Animation, ShotError> 
             .map(read_move)
             .collect::<Result<_, _>>()?,
     };
-    Ok(Animation { fps, moves })
+    let frames = section.get("frames").map(|field| read_frames(&field));
+    Ok(Animation {
+        fps,
+        frames: frames.transpose()?,
+        moves,
+    })
+}
+
+fn read_frames(field: &Field<'_>) -> Result<FrameRange, ShotError> {
+    let expected = format!("{FRAMES}, in quotes");
+    let text = field.text(&expected)?;
+    text.parse().map_err(|_| field.unexpected(expected))
 }
 
 fn read_move(field: &Field<'_>) -> Result<Move, ShotError> {
     let section = field.section()?;
-    section.only(&["node", "translate", "rotate_deg"])?;
-    let node = "a node's name, camera, or a light such as light.0";
+    let node = section.require("node", TARGET)?;
+    let target = target(&node)?;
+    if target == MoveTarget::Medium {
+        section.only(&["node", "density"])?;
+    } else {
+        section.only(&["node", "translate", "rotate_deg"])?;
+    }
     let parsed = Move {
-        node: section.require("node", node)?.text(node)?.to_owned(),
+        location: node.location(),
         translate: keyframes(&section, "translate")?,
         rotate_deg: keyframes(&section, "rotate_deg")?,
+        density: densities(&section)?,
+        target,
     };
-    if parsed.translate.is_empty() && parsed.rotate_deg.is_empty() {
+    if parsed.target == MoveTarget::Medium {
+        section.require("density", DENSITY)?;
+    } else if parsed.translate.is_empty() && parsed.rotate_deg.is_empty() {
         section.require("translate", "translate or rotate_deg, a list of keyframes")?;
     }
     Ok(parsed)
+}
+
+fn target(field: &Field<'_>) -> Result<MoveTarget, ShotError> {
+    Ok(match field.text(TARGET)? {
+        "camera" => MoveTarget::Camera,
+        "medium" => MoveTarget::Medium,
+        name => {
+            let index = name.strip_prefix("light.").map(str::parse);
+            match index {
+                Some(Ok(index)) => MoveTarget::Light(index),
+                Some(Err(_)) | None => MoveTarget::Node(name.to_owned()),
+            }
+        }
+    })
+}
+
+const DENSITY: &str = "a list of keyframes, a number >= 0 each";
+
+fn densities(section: &Section<'_>) -> Result<Vec<f32>, ShotError> {
+    let Some(field) = section.get("density") else {
+        return Ok(Vec::new());
+    };
+    let items = field.list(DENSITY)?;
+    if items.is_empty() {
+        return Err(field.unexpected(DENSITY));
+    }
+    let density = |item: &Field<'_>| item.real("a number >= 0", |x| x >= 0.0);
+    items.iter().map(density).collect()
 }
 
 fn keyframes(section: &Section<'_>, key: &str) -> Result<Vec<[f32; 3]>, ShotError> {
@@ -92,4 +215,23 @@ fn keyframes(section: &Section<'_>, key: &str) -> Result<Vec<[f32; 3]>, ShotErro
         .iter()
         .map(|item| item.vec3("three finite numbers", |_| true))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frame_ranges_hold_both_ends() {
+        let range: FrameRange = "3..7".parse().unwrap();
+        assert_eq!(range.frames().collect::<Vec<_>>(), [3, 4, 5, 6, 7]);
+        for (frame, progress) in [(0, 0.0), (3, 0.0), (5, 0.5), (7, 1.0), (9, 1.0)] {
+            assert_eq!(range.progress(frame), progress, "{frame}");
+        }
+        assert_eq!("4..4".parse::<FrameRange>().unwrap().progress(4), 0.0);
+        for text in ["", "3", "7..3", "a..b", "-1..3", "1..2..3"] {
+            let error = text.parse::<FrameRange>().unwrap_err();
+            assert!(error.contains(&format!("found {text:?}")), "{error}");
+        }
+    }
 }

@@ -23,7 +23,7 @@ use tyndall::{
     techniques::Technique,
 };
 
-pub use animation::{Animation, Move, Temporal};
+pub use animation::{Animation, FrameRange, Move, MoveTarget, Temporal};
 pub(crate) use camera::SceneCameras;
 pub use camera::{CameraBase, CameraSpec};
 pub use error::{Location, Origin, Problem, ShotError};

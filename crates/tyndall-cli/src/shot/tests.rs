@@ -194,7 +194,7 @@ translate = [[0, 0, 0], [2, 0, 0]]
         (
             "node = \"dragon\"\n",
             "",
-            "shot.toml:15: animation.move.0.node: is missing: expected a node's name, camera, or a light such as light.0",
+            "shot.toml:15: animation.move.0.node: is missing: expected a node's name, camera, medium, or a light such as light.0",
         ),
         (
             "translate = [[0, 0, 0], [2, 0, 0]]\n",
@@ -205,6 +205,16 @@ translate = [[0, 0, 0], [2, 0, 0]]
             "[2, 0, 0]",
             "[2, 0]",
             "shot.toml:17: animation.move.0.translate.1: expected three finite numbers, found [2, 0]",
+        ),
+        (
+            "fps = 30",
+            "fps = 30\nframes = \"9..0\"",
+            "shot.toml:15: animation.frames: expected the first and the last frame as A..B, two whole numbers with A <= B, in quotes, found \"9..0\"",
+        ),
+        (
+            "\"dragon\"",
+            "\"medium\"",
+            "shot.toml:17: animation.move.0.translate: no such key: expected node or density",
         ),
     ] {
         assert!(source.contains(from), "{from}");

@@ -12,6 +12,7 @@ mod g_buffer;
 mod glass;
 mod material;
 mod mesh;
+mod occluders;
 mod pipeline;
 pub mod readback;
 mod renderer;
@@ -26,6 +27,7 @@ mod view;
 
 pub use device::{NoAdapter, connect};
 pub use error::GpuSceneError;
+pub use occluders::SceneOccluders;
 pub use renderer::SceneRenderer;
 pub use targets::{GBufferTargets, GlassMapTarget, ShadowMapTarget};
 pub use texture::upload_light_texture;

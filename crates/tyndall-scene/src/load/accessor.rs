@@ -19,6 +19,8 @@ pub(super) enum Integers {
     Refused,
     /// Unsigned ones, normalised to [0, 1].
     UnsignedNormalized,
+    /// 8 and 16-bit ones, normalised to [0, 1] or [-1, 1].
+    Normalized,
     /// 8 and 16-bit ones, normalised or not (`KHR_mesh_quantization`).
     Quantized,
 }
@@ -74,21 +76,29 @@ fn check_vector_type<const N: usize>(
 ) -> Result<(), String> {
     let (dimensions, component) = (accessor.dimensions(), accessor.data_type());
     let expected = match N {
+        1 => Dimensions::Scalar,
         2 => Dimensions::Vec2,
+        4 => Dimensions::Vec4,
         _ => Dimensions::Vec3,
     };
     let component_fits = match component {
         DataType::F32 => true,
         DataType::U32 => false,
-        DataType::U8 | DataType::U16 => {
-            integers == Integers::Quantized
-                || integers == Integers::UnsignedNormalized && accessor.normalized()
-        }
-        DataType::I8 | DataType::I16 => integers == Integers::Quantized,
+        DataType::U8 | DataType::U16 => match integers {
+            Integers::Quantized => true,
+            Integers::UnsignedNormalized | Integers::Normalized => accessor.normalized(),
+            Integers::Refused => false,
+        },
+        DataType::I8 | DataType::I16 => match integers {
+            Integers::Quantized => true,
+            Integers::Normalized => accessor.normalized(),
+            Integers::UnsignedNormalized | Integers::Refused => false,
+        },
     };
     let allowed = match integers {
         Integers::Refused => "F32",
         Integers::UnsignedNormalized => "F32 or normalized U8 or U16",
+        Integers::Normalized => "F32 or normalized I8, U8, I16 or U16",
         Integers::Quantized => "F32, I8, U8, I16 or U16",
     };
     if dimensions == expected && component_fits {

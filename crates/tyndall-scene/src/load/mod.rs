@@ -1,7 +1,7 @@
 //! glTF 2.0 and GLB files.
 //!
 //! What is read: the default scene (else the first one, else every root node) with its meshes (triangle lists, strips
-//! and fans), materials, cameras and lights. `KHR_lights_punctual`, `KHR_materials_transmission` (its factor),
+//! and fans), materials, cameras, lights and the animations of its nodes. `KHR_lights_punctual`, `KHR_materials_transmission` (its factor),
 //! `KHR_materials_emissive_strength`, `KHR_texture_transform` and `KHR_mesh_quantization` are understood; extensions
 //! that change only how a surface reflects light are harmless, because every surface is a Lambert one.
 //!
@@ -13,6 +13,7 @@
 //! Whatever a used mesh, material or picture gets wrong is a [`LoadError`]; what the scene does not use is not read.
 
 mod accessor;
+mod animation;
 mod buffers;
 mod document;
 mod material;
@@ -75,7 +76,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Refusal> {
     let gltf = document::parse(bytes)?;
     let buffers = Buffers::new(&gltf.document, gltf.blob.as_deref(), path.parent());
     let mut meshes = Meshes::new(&gltf.document, &buffers);
-    let nodes = nodes::read(&gltf.document, |mesh| meshes.index_of(mesh))?;
+    let (nodes, scene_node) = nodes::read(&gltf.document, |mesh| meshes.index_of(mesh))?;
+    let animations = animation::read(&gltf.document, &buffers, &scene_node, &nodes)?;
     let (meshes, materials, textures) = meshes.into_parts();
     let mut scene = Scene {
         name: path
@@ -85,6 +87,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Refusal> {
         meshes,
         materials,
         textures,
+        animations,
     };
     nodes::bound_cameras(&mut scene);
     Ok(scene)

@@ -18,21 +18,22 @@ const DEFAULT_ASPECT: f32 = 4.0 / 3.0;
 /// Least far / near of cameras without a far plane.
 const MIN_DEPTH_RATIO: f32 = 1000.0;
 
-/// Reads the nodes of the default scene, parents first; `mesh_index` gives the scene's index of a mesh.
+/// Reads the nodes of the default scene, parents first, and the scene's index of each node of the document, where it has
+/// one; `mesh_index` gives the scene's index of a mesh.
 /// Cameras without a far plane have an infinite one until [`bound_cameras`].
 pub(super) fn read(
     document: &Document,
     mut mesh_index: impl FnMut(&gltf::Mesh<'_>) -> Result<usize, Refusal>,
-) -> Result<Vec<Node>, Refusal> {
+) -> Result<(Vec<Node>, Vec<Option<usize>>), Refusal> {
     let mut nodes = Vec::new();
-    let mut visited = vec![false; document.nodes().len()];
+    let mut scene_node = vec![None; document.nodes().len()];
     let mut pending: Vec<(Option<usize>, gltf::Node<'_>)> = roots(document)
         .into_iter()
         .map(|root| (None, root))
         .collect();
     while let Some((parent, source)) = pending.pop() {
         let place = called("node", source.index(), source.name());
-        if std::mem::replace(&mut visited[source.index()], true) {
+        if scene_node[source.index()].replace(nodes.len()).is_some() {
             return Err(broken(
                 place,
                 "must have one parent, found a second one or a cycle",
@@ -45,7 +46,7 @@ pub(super) fn read(
         let index = nodes.len() - 1;
         pending.extend(source.children().map(|child| (Some(index), child)));
     }
-    Ok(nodes)
+    Ok((nodes, scene_node))
 }
 
 fn roots(document: &Document) -> Vec<gltf::Node<'_>> {

@@ -548,3 +548,114 @@ fn meshes_and_materials_are_shared() {
     assert_eq!(meshes, [Some(0), Some(0)]);
     assert_eq!((scene.meshes.len(), scene.materials.len()), (1, 1));
 }
+
+#[test]
+fn animations_move_nodes_and_rest_where_they_have_no_channel() {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    for (name, interpolation, translations, at_half) in [
+        (
+            "LINEAR",
+            "LINEAR",
+            &[[0.0f32; 3], [2.0, 4.0, 6.0]][..],
+            [1.0, 2.0, 3.0],
+        ),
+        ("STEP", "STEP", &[[0.0; 3], [2.0, 4.0, 6.0]], [0.0; 3]),
+        (
+            "CUBICSPLINE",
+            "CUBICSPLINE",
+            &[
+                [0.0; 3],
+                [0.0; 3],
+                [0.0; 3],
+                [0.0; 3],
+                [2.0, 4.0, 6.0],
+                [0.0; 3],
+            ],
+            [1.0, 2.0, 3.0],
+        ),
+    ] {
+        let nodes = json!([{"name": "still"}, {"name": "moved", "scale": [3, 3, 3], "translation": [9, 9, 9]}]);
+        let mut document = Document::new(nodes, Value::Null);
+        let times = document.accessor(F32, "SCALAR", &floats(&[0.0, 1.0]), 4);
+        let places = document.accessor(F32, "VEC3", &floats(translations.as_flattened()), 12);
+        // A quarter turn about y, as normalised 16-bit integers.
+        let unit = |x: f32| ((x * 32767.0) as i16).to_le_bytes();
+        let turns: Vec<u8> = [0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half]
+            .into_iter()
+            .flat_map(unit)
+            .collect();
+        let turns = document.accessor(5122, "VEC4", &turns, 8);
+        document.json["accessors"][turns]["normalized"] = true.into();
+        document.json["animations"] = json!([{
+            "samplers": [
+                {"input": times, "output": places, "interpolation": interpolation},
+                {"input": times, "output": turns},
+            ],
+            "channels": [
+                {"sampler": 0, "target": {"node": 1, "path": "translation"}},
+                {"sampler": 1, "target": {"node": 1, "path": "rotation"}},
+            ],
+        }]);
+        let mut scene = document.load().unwrap();
+        let still = scene.nodes.iter().position(|n| n.name == "still").unwrap();
+        let moved = scene.nodes.iter().position(|n| n.name == "moved").unwrap();
+        assert_eq!(
+            scene.nodes[moved].parent_from_local.translation,
+            Vec3::splat(9.0).into()
+        );
+        tyndall_scene::animation::pose(&mut scene, 0.5);
+        let place = scene.nodes[moved].parent_from_local;
+        let expected = Affine3A::from_scale_rotation_translation(
+            Vec3::splat(3.0),
+            Quat::from_rotation_y(std::f32::consts::FRAC_PI_4),
+            at_half.into(),
+        );
+        assert!(place.abs_diff_eq(expected, 1e-3), "{name}: {place}");
+        assert_eq!(scene.nodes[still].parent_from_local, Affine3A::IDENTITY);
+    }
+}
+
+#[test]
+fn broken_animations_are_refused_with_what_was_found() {
+    for (times, path, node, message) in [
+        (
+            &[0.0, 0.0][..],
+            "translation",
+            0,
+            "animation 0, channel 0, input: times must rise, found 0 after 0",
+        ),
+        (
+            &[0.0],
+            "translation",
+            0,
+            "animation 0, channel 0, output: must have 1 elements for 1 keys, found 2",
+        ),
+        (
+            &[0.0, 1.0],
+            "translation",
+            7,
+            "animation 0, channel 0, target: node 7 is out of range for 1 nodes",
+        ),
+        (
+            &[0.0, 1.0],
+            "colour",
+            0,
+            "animation 0, channel 0, target: path must be translation, rotation, scale or weights, found another word",
+        ),
+        (
+            &[0.0, 1.0],
+            "rotation",
+            0,
+            "animation 0, channel 0, accessor 1: must be Vec4 of F32 or normalized I8, U8, I16 or U16, found Vec3 of F32",
+        ),
+    ] {
+        let mut document = Document::new(json!([{}]), Value::Null);
+        let input = document.accessor(F32, "SCALAR", &floats(times), 4);
+        let output = document.accessor(F32, "VEC3", &floats(&[0.0; 6]), 12);
+        document.json["animations"] = json!([{
+            "samplers": [{"input": input, "output": output}],
+            "channels": [{"sampler": 0, "target": {"node": node, "path": path}}],
+        }]);
+        assert_eq!(document.refusal(), message);
+    }
+}

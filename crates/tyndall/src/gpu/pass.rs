@@ -19,6 +19,11 @@ pub(crate) enum Work {
         target: wgpu::TextureView,
         draws: Vec<Draw>,
     },
+    /// A triangle over the whole of a stencil, 0 before, that leaves 1 where it is not discarded.
+    Stencil {
+        stencil: wgpu::TextureView,
+        draw: Draw,
+    },
 }
 
 /// One dispatch.
@@ -48,6 +53,8 @@ pub(crate) struct FullScreen {
     /// Bind groups 0, 1 and so on.
     pub(crate) groups: Vec<wgpu::BindGroup>,
     pub(crate) target: wgpu::TextureView,
+    /// Where there is one, the target keeps its content, and is drawn on only where this is 1.
+    pub(crate) stencil: Option<wgpu::TextureView>,
 }
 
 /// One draw.
@@ -60,8 +67,11 @@ pub(crate) struct Draw {
 
 /// How much a draw draws.
 pub(crate) enum Vertices {
-    /// So many vertices, so many times.
-    Direct { vertices: u32, instances: u32 },
+    /// So many vertices, once an instance.
+    Direct {
+        vertices: u32,
+        instances: std::ops::Range<u32>,
+    },
     /// What stands in a buffer at an offset [bytes].
     Indirect(wgpu::Buffer, u64),
 }
@@ -110,16 +120,32 @@ impl Pass {
                     draw.record(&self.name, encoder, stamps);
                 }
             }
+            Work::Stencil { stencil, draw } => {
+                let stamps = timer.and_then(|t| t.render_pass(&self.name));
+                let cleared = Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Store,
+                });
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label: Some(&self.name),
+                    depth_stencil_attachment: Some(stencil_attachment(stencil, cleared)),
+                    timestamp_writes: stamps,
+                    ..Default::default()
+                });
+                set(&mut pass, &draw.pipeline, &draw.groups);
+                pass.set_stencil_reference(1);
+                pass.draw(0..3, 0..1);
+            }
             Work::Draw { target, draws } => {
                 let stamps = timer.and_then(|t| t.render_pass(&self.name));
-                let mut pass = begin(&self.name, encoder, target, stamps);
+                let mut pass = begin(&self.name, encoder, target, None, stamps);
                 for draw in draws {
                     set(&mut pass, &draw.pipeline, &draw.groups);
                     match &draw.vertices {
                         Vertices::Direct {
                             vertices,
                             instances,
-                        } => pass.draw(0..*vertices, 0..*instances),
+                        } => pass.draw(0..*vertices, instances.clone()),
                         Vertices::Indirect(buffer, offset) => pass.draw_indirect(buffer, *offset),
                     }
                 }
@@ -128,11 +154,23 @@ impl Pass {
     }
 }
 
-/// A render pass onto a cleared picture.
+fn stencil_attachment(
+    view: &wgpu::TextureView,
+    stencil_ops: Option<wgpu::Operations<u32>>,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: None,
+        stencil_ops,
+    }
+}
+
+/// A render pass onto a cleared picture, or, where there is a stencil, onto what is there.
 fn begin<'e>(
     name: &str,
     encoder: &'e mut wgpu::CommandEncoder,
     target: &wgpu::TextureView,
+    stencil: Option<&wgpu::TextureView>,
     timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -142,10 +180,14 @@ fn begin<'e>(
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                load: match stencil {
+                    None => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    Some(_) => wgpu::LoadOp::Load,
+                },
                 store: wgpu::StoreOp::Store,
             },
         })],
+        depth_stencil_attachment: stencil.map(|stencil| stencil_attachment(stencil, None)),
         timestamp_writes,
         ..Default::default()
     })
@@ -169,8 +211,10 @@ impl FullScreen {
         encoder: &mut wgpu::CommandEncoder,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
-        let mut pass = begin(name, encoder, &self.target, timestamp_writes);
+        let stencil = self.stencil.as_ref();
+        let mut pass = begin(name, encoder, &self.target, stencil, timestamp_writes);
         set(&mut pass, &self.pipeline, &self.groups);
+        pass.set_stencil_reference(1);
         pass.draw(0..3, 0..1);
     }
 }

@@ -11,6 +11,56 @@ use super::{
     uniforms::LightVariant,
 };
 
+/// What a stencil is kept in.
+pub(crate) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
+
+/// What a render pipeline does with a stencil.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Stencil {
+    /// There is none.
+    Absent,
+    /// Draws where it is 1.
+    Tested,
+    /// Writes it, and no picture.
+    Written,
+}
+
+impl Stencil {
+    fn state(self) -> Option<wgpu::DepthStencilState> {
+        let (compare, pass_op, write_mask) = match self {
+            Self::Absent => return None,
+            Self::Tested => (
+                wgpu::CompareFunction::Equal,
+                wgpu::StencilOperation::Keep,
+                0,
+            ),
+            Self::Written => (
+                wgpu::CompareFunction::Always,
+                wgpu::StencilOperation::Replace,
+                0xff,
+            ),
+        };
+        let face = wgpu::StencilFaceState {
+            compare,
+            fail_op: wgpu::StencilOperation::Keep,
+            depth_fail_op: wgpu::StencilOperation::Keep,
+            pass_op,
+        };
+        Some(wgpu::DepthStencilState {
+            format: STENCIL_FORMAT,
+            depth_write_enabled: None,
+            depth_compare: None,
+            stencil: wgpu::StencilState {
+                front: face,
+                back: face,
+                read_mask: 0xff,
+                write_mask,
+            },
+            bias: wgpu::DepthBiasState::default(),
+        })
+    }
+}
+
 /// Where a render pipeline's triangles come from and go to.
 #[derive(Clone)]
 pub(crate) struct Raster {
@@ -18,6 +68,7 @@ pub(crate) struct Raster {
     pub(crate) vertex: &'static str,
     pub(crate) topology: wgpu::PrimitiveTopology,
     pub(crate) target: wgpu::ColorTargetState,
+    pub(crate) stencil: Stencil,
 }
 
 impl Raster {
@@ -27,6 +78,7 @@ impl Raster {
             vertex: "frame_full_screen",
             topology: wgpu::PrimitiveTopology::TriangleList,
             target,
+            stencil: Stencil::Absent,
         }
     }
 
@@ -40,6 +92,7 @@ impl Raster {
         layout: &wgpu::PipelineLayout,
         constants: &[(&str, f64)],
     ) -> wgpu::RenderPipeline {
+        let target = [Some(self.target.clone())];
         let compilation_options = wgpu::PipelineCompilationOptions {
             constants,
             ..Default::default()
@@ -57,13 +110,17 @@ impl Raster {
                 module,
                 entry_point: Some(entry_point),
                 compilation_options,
-                targets: &[Some(self.target.clone())],
+                targets: if self.stencil == Stencil::Written {
+                    &[]
+                } else {
+                    &target
+                },
             }),
             primitive: wgpu::PrimitiveState {
                 topology: self.topology,
                 ..Default::default()
             },
-            depth_stencil: None,
+            depth_stencil: self.stencil.state(),
             multisample: wgpu::MultisampleState::default(),
             multiview_mask: None,
             cache: None,
@@ -88,11 +145,21 @@ pub(crate) struct Recipe {
 
 /// A kind of pipeline.
 pub(crate) trait Pipeline: Clone {
-    fn make(device: &wgpu::Device, recipe: &Recipe, constants: &[(&str, f64)]) -> Self;
+    fn make(
+        device: &wgpu::Device,
+        recipe: &Recipe,
+        constants: &[(&str, f64)],
+        stencil: Stencil,
+    ) -> Self;
 }
 
 impl Pipeline for wgpu::ComputePipeline {
-    fn make(device: &wgpu::Device, recipe: &Recipe, constants: &[(&str, f64)]) -> Self {
+    fn make(
+        device: &wgpu::Device,
+        recipe: &Recipe,
+        constants: &[(&str, f64)],
+        _stencil: Stencil,
+    ) -> Self {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(recipe.label),
             layout: Some(&recipe.layout),
@@ -108,8 +175,17 @@ impl Pipeline for wgpu::ComputePipeline {
 }
 
 impl Pipeline for wgpu::RenderPipeline {
-    fn make(device: &wgpu::Device, recipe: &Recipe, constants: &[(&str, f64)]) -> Self {
-        recipe.raster.pipeline(
+    fn make(
+        device: &wgpu::Device,
+        recipe: &Recipe,
+        constants: &[(&str, f64)],
+        stencil: Stencil,
+    ) -> Self {
+        let raster = Raster {
+            stencil,
+            ..recipe.raster.clone()
+        };
+        raster.pipeline(
             device,
             recipe.label,
             &recipe.module,
@@ -123,7 +199,7 @@ impl Pipeline for wgpu::RenderPipeline {
 /// A shader and the pipelines made of it.
 pub(crate) struct Program<P> {
     recipe: Recipe,
-    made: Mutex<HashMap<LightVariant, P>>,
+    made: Mutex<HashMap<(LightVariant, Stencil), P>>,
 }
 
 /// A program of dispatches.
@@ -214,6 +290,16 @@ impl<P: Pipeline> Program<P> {
 
     /// The pipeline for this kind of light.
     pub(crate) fn get(&self, device: &wgpu::Device, variant: LightVariant) -> P {
+        self.with_stencil(device, variant, Stencil::Absent)
+    }
+
+    /// The same for passes with a stencil.
+    pub(crate) fn with_stencil(
+        &self,
+        device: &wgpu::Device,
+        variant: LightVariant,
+        stencil: Stencil,
+    ) -> P {
         let variant = if self.recipe.reads_light {
             variant
         } else {
@@ -223,8 +309,8 @@ impl<P: Pipeline> Program<P> {
         let make = || {
             let mut constants = variant.constants().to_vec();
             constants.extend(&self.recipe.constants);
-            P::make(device, &self.recipe, &constants)
+            P::make(device, &self.recipe, &constants, stencil)
         };
-        made.entry(variant).or_insert_with(make).clone()
+        made.entry((variant, stencil)).or_insert_with(make).clone()
     }
 }

@@ -1,11 +1,13 @@
 //! What a technique sees when it prepares a light: the frame, the light's inputs, and where to keep things.
 
+use std::num::NonZeroU64;
+
 use super::{
     airlight::AirlightPictures,
     layout::{self, Absent},
     pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
     pool::Pool,
-    program::{ComputeProgram, ScreenProgram},
+    program::{ComputeProgram, ScreenProgram, Stencil},
     uniforms::LightVariant,
 };
 use crate::{
@@ -44,6 +46,26 @@ impl Shared {
     }
 }
 
+/// Offsets of uniform buffers are multiples of this, by WebGPU's default limits [bytes].
+const BLOCK_STRIDE: usize = 256;
+
+/// Uniform blocks of one buffer.
+pub(crate) struct Blocks {
+    buffer: wgpu::Buffer,
+    size: Option<NonZeroU64>,
+}
+
+impl Blocks {
+    /// The block of this index.
+    pub(crate) fn binding(&self, index: usize) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.buffer,
+            offset: (index * BLOCK_STRIDE) as u64,
+            size: self.size,
+        })
+    }
+}
+
 /// One light of a frame that is being prepared.
 pub(crate) struct LightScope<'a> {
     pub(crate) device: &'a wgpu::Device,
@@ -64,6 +86,11 @@ pub(crate) struct LightScope<'a> {
     pub(crate) light_group: wgpu::BindGroup,
     /// What the last pass writes: the lights so far and this one (rgb), and the mean transmittance (a).
     pub(crate) target: wgpu::TextureView,
+    /// Which pixels the last pass writes, where 1; `None`: all.
+    pub(crate) stencil: Option<wgpu::TextureView>,
+    /// A picture of the view's size that the last pass reads at its own pixel, and that may change where neither depth nor
+    /// shadow map do; two half floats.
+    pub(crate) witness: Option<wgpu::TextureView>,
     /// What the frame's passes count.
     pub(crate) counts: &'a mut Vec<Count>,
 }
@@ -83,6 +110,24 @@ impl LightScope<'_> {
     ) -> wgpu::Buffer {
         self.pool
             .uniform(self.device, self.queue, (Some(self.index), name), value)
+    }
+
+    /// Uniform blocks of this light that stand in one buffer; at least one.
+    pub(crate) fn blocks<T: bytemuck::Pod>(&mut self, name: &'static str, values: &[T]) -> Blocks {
+        let mut bytes = vec![0; (values.len().max(1)) * BLOCK_STRIDE];
+        for (value, slot) in values.iter().zip(bytes.chunks_mut(BLOCK_STRIDE)) {
+            slot[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(value));
+        }
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let key = (Some(self.index), name);
+        let buffer = self
+            .pool
+            .buffer(self.device, key, bytes.len() as u64, usage);
+        self.queue.write_buffer(&buffer, 0, &bytes);
+        Blocks {
+            buffer,
+            size: NonZeroU64::new(size_of::<T>() as u64),
+        }
     }
 
     /// A storage buffer of this light.
@@ -188,9 +233,19 @@ impl LightScope<'_> {
         name: &str,
         resources: &[wgpu::BindingResource<'_>],
     ) -> Pass {
+        let stencil = match self.stencil {
+            None => Stencil::Absent,
+            Some(_) => Stencil::Tested,
+        };
+        let draw = FullScreen {
+            pipeline: program.with_stencil(self.device, self.variant, stencil),
+            groups: self.groups(program.bind(self.device, resources)),
+            target: self.target.clone(),
+            stencil: self.stencil.clone(),
+        };
         Pass {
             name: self.pass_name(name),
-            work: Work::FullScreen(vec![self.draw(program, resources, self.target.clone())]),
+            work: Work::FullScreen(vec![draw]),
         }
     }
 
@@ -205,6 +260,7 @@ impl LightScope<'_> {
             pipeline: program.get(self.device, self.variant),
             groups: self.groups(program.bind(self.device, resources)),
             target,
+            stencil: None,
         }
     }
 
@@ -233,7 +289,7 @@ impl LightScope<'_> {
         format!("{name} light {}", self.index)
     }
 
-    fn groups(&self, own: wgpu::BindGroup) -> Vec<wgpu::BindGroup> {
+    pub(crate) fn groups(&self, own: wgpu::BindGroup) -> Vec<wgpu::BindGroup> {
         vec![self.frame_group.clone(), self.light_group.clone(), own]
     }
 }

@@ -20,6 +20,8 @@ pub(crate) const LIGHT: &str = include_str!("../light/light.wgsl");
 pub(crate) const STRETCH: &str = include_str!("../light/stretch.wgsl");
 /// Bind group 1: shadow maps.
 pub(crate) const SHADOW: &str = include_str!("../shadow/shadow.wgsl");
+/// Steps along view rays; needs frame and light.
+pub(crate) const MARCH: &str = include_str!("../shadow/march.wgsl");
 
 /// Epipolar lines on the picture.
 pub(crate) const SCREEN: &str = include_str!("../epipolar/screen.wgsl");

@@ -272,8 +272,8 @@ mod tests {
     use std::mem::{offset_of, size_of};
 
     use crate::{
-        gpu::shader::{FRAME_MODULES, LIGHT_MODULES, join},
-        techniques::{light_volume, ray_march},
+        gpu::shader::{AIRLIGHT, FRAME_MODULES, LIGHT_MODULES, MARCH, STRETCH, join},
+        techniques::{hybrid, light_volume, ray_march},
     };
 
     macro_rules! layout {
@@ -285,7 +285,11 @@ mod tests {
     #[test]
     fn blocks_are_laid_out_as_in_wgsl() {
         let own = [
+            AIRLIGHT,
+            STRETCH,
+            MARCH,
             ray_march::gpu::RAY_MARCH,
+            hybrid::gpu::HYBRID,
             light_volume::gpu::CUBE,
             light_volume::gpu::MESH,
             light_volume::gpu::SPLITS,
@@ -312,6 +316,10 @@ mod tests {
             (
                 "RayMarchParams",
                 layout!(ray_march::gpu::ParamsUniform: steps, spacing),
+            ),
+            (
+                "HybridParams",
+                layout!(hybrid::gpu::ParamsUniform: steps, bounds, show),
             ),
             (
                 "LightVolumeParams",

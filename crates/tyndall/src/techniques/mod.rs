@@ -1,6 +1,7 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
 pub mod epipolar_sampling;
+pub mod hybrid;
 pub mod incremental;
 pub mod light_volume;
 pub mod min_max;
@@ -16,6 +17,7 @@ use {
         effect::LightInputs,
         frame::Light,
         gpu::{pass::Pass, program::ScreenProgram, scope::LightScope},
+        temporal::Reach,
     },
     std::sync::OnceLock,
 };
@@ -37,6 +39,8 @@ pub enum Technique {
     LightVolume(light_volume::Params),
     /// Epipolar sampling.
     Epipolar(epipolar_sampling::Params),
+    /// Shadow volumes and steps.
+    Hybrid(hybrid::Params),
 }
 
 /// Which backends a technique runs on.
@@ -97,6 +101,7 @@ pub const TABLE: &[TechniqueInfo] = &[
     ray_march::INFO,
     epipolar_sampling::INFO,
     light_volume::INFO,
+    hybrid::INFO,
     incremental::INFO,
     reference::INFO,
 ];
@@ -131,6 +136,7 @@ impl Technique {
             Self::Incremental(_) => &incremental::INFO,
             Self::LightVolume(_) => &light_volume::INFO,
             Self::Epipolar(_) => &epipolar_sampling::INFO,
+            Self::Hybrid(_) => &hybrid::INFO,
         }
     }
 
@@ -143,6 +149,7 @@ impl Technique {
             Self::Incremental(p) => p.list(),
             Self::LightVolume(p) => p.list(),
             Self::Epipolar(p) => p.list(),
+            Self::Hybrid(p) => p.list(),
         }
     }
 
@@ -158,6 +165,7 @@ impl Technique {
             Self::Incremental(p) => p.set(key, value),
             Self::LightVolume(p) => p.set(key, value),
             Self::Epipolar(p) => p.set(key, value),
+            Self::Hybrid(p) => p.set(key, value),
         }
     }
 
@@ -180,10 +188,12 @@ impl Technique {
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
             // The table says they are the GPU's.
-            Self::LightVolume(_) | Self::Epipolar(_) => Err(PrepareError::Unsupported {
-                technique: self.info().name,
-                what: "its work on the CPU".into(),
-            }),
+            Self::LightVolume(_) | Self::Epipolar(_) | Self::Hybrid(_) => {
+                Err(PrepareError::Unsupported {
+                    technique: self.info().name,
+                    what: "its work on the CPU".into(),
+                })
+            }
         }
     }
 }
@@ -196,6 +206,7 @@ pub(crate) struct Programs {
     min_max: OnceLock<min_max::gpu::Programs>,
     light_volume: OnceLock<light_volume::gpu::Programs>,
     epipolar: OnceLock<epipolar_sampling::gpu::Programs>,
+    hybrid: OnceLock<hybrid::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -214,6 +225,15 @@ impl Technique {
             Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
             Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
             _ => Ok(()),
+        }
+    }
+
+    /// How far from its own ray a pixel's last pass looks.
+    pub(crate) fn reach(&self) -> Reach {
+        match self {
+            Self::RayMarch(_) | Self::Hybrid(_) => Reach::Pixels(0.0),
+            Self::MinMax(p) => min_max::gpu::reach(p),
+            _ => Reach::Picture,
         }
     }
 
@@ -240,6 +260,10 @@ impl Technique {
             Self::Epipolar(p) => {
                 let make = || epipolar_sampling::gpu::Programs::new(device, shared);
                 epipolar_sampling::gpu::passes(p, programs.epipolar.get_or_init(make), scope)
+            }
+            Self::Hybrid(p) => {
+                let make = || hybrid::gpu::Programs::new(device, shared);
+                hybrid::gpu::passes(p, programs.hybrid.get_or_init(make), scope)
             }
             // Refused by the table: they have no GPU side.
             Self::Reference(_) | Self::Incremental(_) => Vec::new(),

@@ -1,6 +1,6 @@
 //! What belongs to each light on the GPU.
 
-use tyndall::LightInputs;
+use tyndall::{LightInputs, Occluder, frame::Light};
 use tyndall_scene::gpu::{GlassMapTarget, SceneRenderer, ShadowMapTarget, upload_light_texture};
 use wgpu::TextureView;
 
@@ -51,19 +51,29 @@ impl LightTargets {
         })
     }
 
+    /// Whether there is a shadow map where the light needs one.
+    pub(super) fn suits(&self, light: &Light, needs: Needs) -> bool {
+        self.shadow_map.is_some() == (light.shadow.is_some() && needs.light_maps)
+    }
+
     pub(super) fn bytes(&self) -> u64 {
         self.shadow_map.as_ref().map_or(0, ShadowMapTarget::bytes)
             + self.glass.as_ref().map_or(0, GlassMapTarget::bytes)
     }
 }
 
-pub(super) fn light_inputs(lights: &[LightTargets]) -> Vec<LightInputs<'_>> {
+/// The lights' pictures; `occluders` are the same for all of them.
+pub(super) fn light_inputs<'a>(
+    lights: &'a [LightTargets],
+    occluders: Option<&'a [Occluder<'a>]>,
+) -> Vec<LightInputs<'a>> {
     lights
         .iter()
         .map(|light| LightInputs {
             shadow_map: light.shadow_map.as_ref().map(ShadowMapTarget::view),
             glass: light.glass.as_ref().map(GlassMapTarget::view),
             texture: light.texture.as_ref(),
+            occluders,
             ..LightInputs::default()
         })
         .collect()

@@ -18,25 +18,10 @@ pub(crate) use errors::DeviceErrors;
 pub(crate) use timestamps::Timestamps;
 pub(crate) use world::World;
 
-pub(super) fn render(
-    setup: &Setup,
-    gpu: &Gpu,
+/// Everything that is made once and holds for any number of frames.
+pub(super) struct Pipeline<'a> {
+    gpu: &'a Gpu,
     needs: Needs,
-    layers: &[Layer],
-    stages: &mut Stages,
-) -> Result<Rendered, Failure> {
-    let pipeline = stages.run("build pipelines and upload", |_| {
-        Pipeline::new(setup, gpu, needs)
-    });
-    let mut pipeline = gpu.errors.else_result(pipeline)?;
-    let rendered = stages.run("render", |_| pipeline.render(setup, needs, layers));
-    gpu.errors.else_result(rendered)
-}
-
-/// Everything that is made once and would hold for any number of frames.
-struct Pipeline {
-    device: Device,
-    queue: Queue,
     world: World,
     effect: Effect,
     view: EffectView,
@@ -44,46 +29,62 @@ struct Pipeline {
     timestamps: Timestamps,
 }
 
-impl Pipeline {
-    fn new(setup: &Setup, gpu: &Gpu, needs: Needs) -> Result<Self, Failure> {
-        let Gpu { device, queue, .. } = gpu;
-        let format = target_format(device);
-        let world = World::new(setup, gpu, needs, format)?;
-        let effect = new_effect(device, format)?;
-        let view = effect.create_view(device, setup.size);
-        Ok(Self {
-            view: view.map_err(Failure::device)?,
-            color: ColorTarget::new(device, setup.size, format),
-            timestamps: Timestamps::new(device),
-            device: device.clone(),
-            queue: queue.clone(),
-            world,
-            effect,
-        })
+impl<'a> Pipeline<'a> {
+    /// Uploads the setup's scene.
+    pub(super) fn new(
+        setup: &Setup,
+        gpu: &'a Gpu,
+        needs: Needs,
+        stages: &mut Stages,
+    ) -> Result<Self, Failure> {
+        let pipeline = stages.run("build pipelines and upload", |_| {
+            let format = target_format(&gpu.device);
+            let world = World::new(setup, gpu, needs, format)?;
+            let effect = new_effect(&gpu.device, format)?;
+            let view = effect.create_view(&gpu.device, setup.size);
+            Ok(Self {
+                view: view.map_err(Failure::device)?,
+                color: ColorTarget::new(&gpu.device, setup.size, format),
+                timestamps: Timestamps::new(&gpu.device),
+                gpu,
+                needs,
+                world,
+                effect,
+            })
+        });
+        gpu.errors.else_result(pipeline)
     }
 
-    fn render(
+    /// Renders a frame whose nodes may have moved since the last one.
+    pub(super) fn render(
         &mut self,
         setup: &Setup,
-        needs: Needs,
         layers: &[Layer],
+        stages: &mut Stages,
     ) -> Result<Rendered, Failure> {
-        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let rendered = stages.run("render", |_| self.draw(setup, layers));
+        self.gpu.errors.else_result(rendered)
+    }
+
+    fn draw(&mut self, setup: &Setup, layers: &[Layer]) -> Result<Rendered, Failure> {
+        self.world.place(setup, self.gpu, self.needs)?;
+        let Gpu { device, queue, .. } = self.gpu;
+        let mut encoder = device.create_command_encoder(&Default::default());
         self.timestamps.begin(&mut encoder);
-        self.draw_world(setup, needs, &mut encoder);
-        if needs.in_scatter {
+        self.draw_world(setup, &mut encoder);
+        if self.needs.in_scatter {
             self.draw_in_scatter(setup, &mut encoder)?;
         }
-        self.queue.submit([encoder.finish()]);
+        queue.submit([encoder.finish()]);
         // The composite draws on the surface, so that is read first.
         let surface = self.read_if(layers.contains(&Layer::Surface), &self.color.texture)?;
-        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut encoder = device.create_command_encoder(&Default::default());
         if layers.contains(&Layer::Final) {
             let mut pass = self.color.begin_pass(&mut encoder, self.timestamps.timer());
             self.effect.composite(&mut pass, &self.view);
         }
         self.timestamps.resolve(&mut encoder);
-        self.queue.submit([encoder.finish()]);
+        queue.submit([encoder.finish()]);
         let composited = self.read_if(layers.contains(&Layer::Final), &self.color.texture)?;
         let in_scatter = self.view.output().texture();
         let in_scatter = self.read_if(layers.contains(&Layer::Inscatter), in_scatter)?;
@@ -101,17 +102,17 @@ impl Pipeline {
                 .iter()
                 .map(|&layer| (layer, picture(layer)))
                 .collect(),
-            passes: self.timestamps.read(&self.device, &self.queue)?,
+            passes: self.timestamps.read(device, queue)?,
             bytes: self.bytes(),
-            counts: counts(&self.view, &self.device, &self.queue)?,
+            counts: counts(&self.view, device, queue)?,
         })
     }
 
-    fn draw_world(&mut self, setup: &Setup, needs: Needs, encoder: &mut CommandEncoder) {
+    fn draw_world(&mut self, setup: &Setup, encoder: &mut CommandEncoder) {
         let (world, timestamps) = (&self.world, &mut self.timestamps);
         world.draw_light_maps(setup, encoder, timestamps.timer());
         world.draw_g_buffer(setup, encoder, timestamps.timer());
-        if needs.surface {
+        if self.needs.surface {
             world.draw_surfaces(setup, encoder, &self.color.view, timestamps.timer());
         }
     }
@@ -121,11 +122,14 @@ impl Pipeline {
         setup: &Setup,
         encoder: &mut CommandEncoder,
     ) -> Result<(), Failure> {
+        let world = &self.world;
+        let occluders = world.occluders(setup, &setup.frame.technique, self.gpu)?;
         let inputs = FrameInputs {
-            depth: self.world.g_buffer().depth_view(),
-            lights: &self.world.light_inputs(),
+            depth: world.g_buffer().depth_view(),
+            lights: &world.light_inputs(occluders.as_deref()),
         };
-        let (device, queue, view) = (&self.device, &self.queue, &mut self.view);
+        let Gpu { device, queue, .. } = self.gpu;
+        let view = &mut self.view;
         self.effect
             .prepare(device, queue, view, &inputs, &setup.frame)
             .map_err(Failure::input)?;
@@ -138,14 +142,14 @@ impl Pipeline {
         if !wanted {
             return Ok(Vec::new());
         }
-        readback::texture_f32(&self.device, &self.queue, texture).map_err(Failure::device)
+        readback::texture_f32(&self.gpu.device, &self.gpu.queue, texture).map_err(Failure::device)
     }
 
     fn bytes(&self) -> Vec<(&'static str, u64)> {
-        let [g_buffer, light_maps] = self.world.bytes();
         let effect = ("effect", self.view.bytes());
         let color = ("colour target", self.color.bytes());
-        vec![effect, g_buffer, color, light_maps]
+        let world = self.world.bytes();
+        [effect, color].into_iter().chain(world).collect()
     }
 }
 

@@ -1,8 +1,10 @@
 //! What an engine has before volumetric light comes in: the scene on the device, a depth buffer, shadow maps.
 
-use tyndall::{LightInputs, gpu::PassTimer};
+use std::cell::OnceCell;
+
+use tyndall::{LightInputs, Occluder, gpu::PassTimer, techniques::Technique};
 use tyndall_scene::gpu::{
-    GBufferTargets, SceneRenderer,
+    GBufferTargets, SceneOccluders, SceneRenderer,
     readback::{self, ReadbackError},
 };
 use wgpu::{CommandEncoder, TextureFormat, TextureView};
@@ -10,7 +12,7 @@ use wgpu::{CommandEncoder, TextureFormat, TextureView};
 use super::lights::{LightTargets, light_inputs};
 use crate::{
     failure::Failure,
-    render::{Buffers, Gpu, LightMaps, Needs},
+    render::{Buffers, Gpu, LightMaps, Needs, reads_occluders},
     setup::Setup,
 };
 
@@ -19,6 +21,7 @@ pub(crate) struct World {
     renderer: SceneRenderer,
     g_buffer: GBufferTargets,
     lights: Vec<LightTargets>,
+    occluders: OnceCell<SceneOccluders>,
 }
 
 impl World {
@@ -39,7 +42,21 @@ impl World {
             g_buffer: GBufferTargets::new(device, setup.size).map_err(Failure::device)?,
             renderer,
             lights,
+            occluders: OnceCell::new(),
         })
+    }
+
+    /// Moves the nodes to where they are in this setup, which differs from the one given first in the places of nodes,
+    /// camera and lights alone.
+    pub(crate) fn place(&mut self, setup: &Setup, gpu: &Gpu, needs: Needs) -> Result<(), Failure> {
+        self.renderer.place(&gpu.queue, &setup.scene);
+        for (index, targets) in self.lights.iter_mut().enumerate() {
+            // A light that turns towards the scene or away from it gets or loses its map.
+            if !targets.suits(&setup.frame.lights[index], needs) {
+                *targets = LightTargets::new(setup, index, gpu, &self.renderer, needs)?;
+            }
+        }
+        Ok(())
     }
 
     /// Records every light's shadow map and coloured glass.
@@ -88,7 +105,7 @@ impl World {
         target: &TextureView,
         timer: Option<&mut PassTimer>,
     ) {
-        let (lights, frame) = (self.light_inputs(), &setup.frame);
+        let (lights, frame) = (self.light_inputs(None), &setup.frame);
         self.renderer
             .shade(encoder, target, &self.g_buffer, frame, &lights, timer);
     }
@@ -98,9 +115,33 @@ impl World {
         &self.g_buffer
     }
 
-    /// The lights' pictures, as tyndall takes them.
-    pub(crate) fn light_inputs(&self) -> Vec<LightInputs<'_>> {
-        light_inputs(&self.lights)
+    /// The lights' inputs, as tyndall takes them.
+    pub(crate) fn light_inputs<'a>(
+        &'a self,
+        occluders: Option<&'a [Occluder<'a>]>,
+    ) -> Vec<LightInputs<'a>> {
+        light_inputs(&self.lights, occluders)
+    }
+
+    /// What blocks light, where it is in this setup; nothing for techniques that don't ask. Uploaded when first asked for.
+    pub(crate) fn occluders(
+        &self,
+        setup: &Setup,
+        technique: &Technique,
+        gpu: &Gpu,
+    ) -> Result<Option<Vec<Occluder<'_>>>, Failure> {
+        if !reads_occluders(technique) {
+            return Ok(None);
+        }
+        let uploaded = match self.occluders.get() {
+            Some(uploaded) => uploaded,
+            None => {
+                let uploaded = SceneOccluders::new(&gpu.device, &setup.scene);
+                let uploaded = uploaded.map_err(Failure::device)?;
+                self.occluders.get_or_init(|| uploaded)
+            }
+        };
+        Ok(Some(uploaded.places(&setup.scene)))
     }
 
     /// What the CPU needs to work on the very same pictures. Waits for the device.
@@ -127,8 +168,13 @@ impl World {
     }
 
     /// Textures, by what they are for [bytes].
-    pub(crate) fn bytes(&self) -> [(&'static str, u64); 2] {
+    pub(crate) fn bytes(&self) -> [(&'static str, u64); 3] {
         let lights = self.lights.iter().map(LightTargets::bytes).sum();
-        [("G-buffer", self.g_buffer.bytes()), ("light maps", lights)]
+        let occluders = self.occluders.get().map_or(0, SceneOccluders::bytes);
+        [
+            ("G-buffer", self.g_buffer.bytes()),
+            ("light maps", lights),
+            ("occluders", occluders),
+        ]
     }
 }

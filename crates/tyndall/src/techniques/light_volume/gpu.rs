@@ -17,7 +17,7 @@ use crate::{
     gpu::{
         layout,
         pass::{Pass, Vertices, Work},
-        program::{ComputeProgram, Raster, ScreenProgram},
+        program::{ComputeProgram, Raster, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, STRETCH},
     },
@@ -78,6 +78,7 @@ impl Programs {
                     blend: Some(ADD),
                     write_mask: wgpu::ColorWrites::ALL,
                 },
+                stencil: Stencil::Absent,
             };
             let wgsl = [AIRLIGHT, AIRLIGHT_TABLE, STRETCH, CUBE, MESH, SURFACE];
             let own = [
@@ -405,7 +406,7 @@ impl Mesh {
             None => {
                 let strips = Vertices::Direct {
                     vertices: 2 * (columns + 1),
-                    instances: rows * self.extent.faces,
+                    instances: 0..rows * self.extent.faces,
                 };
                 vec![scope.draw_mesh(&programs.strip, &own, strips)]
             }
@@ -422,7 +423,7 @@ impl Mesh {
         if self.extent.faces == 1 {
             let sides = Vertices::Direct {
                 vertices: 9 * 2 * (columns + rows),
-                instances: 1,
+                instances: 0..1,
             };
             draws.push(scope.draw_mesh(&programs.side, &own, sides));
         }

@@ -24,6 +24,7 @@ use crate::{
         self,
         pyramid::{self, PYRAMID, Source},
     },
+    temporal::Reach,
     validate,
 };
 
@@ -189,6 +190,15 @@ pub(crate) fn passes(
         passes.push(scope.full_screen(&programs.show, "show", &resources));
     }
     passes
+}
+
+/// Pixels look at the slice beside them, which is half a pixel off at most, unless the slices are given by hand. Light
+/// through a picture is summed up along whole slices.
+pub(crate) fn reach(params: &Params) -> Reach {
+    match params.resolution.slices {
+        0 => Reach::Pixels(1.0),
+        _ => Reach::Picture,
+    }
 }
 
 /// Columns of tints a slice of so many samples.

@@ -8,6 +8,7 @@ use crate::gpu::{
     pass::Pass,
     program::ScreenProgram,
     scope::{LightScope, Shared},
+    shader::MARCH,
 };
 
 /// The pass.
@@ -38,7 +39,14 @@ impl ParamsUniform {
 /// The technique's shader.
 pub(crate) fn program(device: &wgpu::Device, shared: &Shared) -> ScreenProgram {
     let own = [layout::uniform::<ParamsUniform>(0)];
-    ScreenProgram::new(device, shared, "ray march", &[RAY_MARCH], "ray_march", &own)
+    ScreenProgram::new(
+        device,
+        shared,
+        "ray march",
+        &[MARCH, RAY_MARCH],
+        "ray_march",
+        &own,
+    )
 }
 
 /// The passes of one light.

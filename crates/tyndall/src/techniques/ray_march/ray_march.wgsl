@@ -25,18 +25,7 @@ fn ray_march_light(ray: Ray) -> vec3f {
     if light_is_local() && ray_march_params.spacing == RAY_MARCH_EQUIANGULAR {
         return ray_march_equiangular(ray, span);
     }
-    return ray_march_equal(ray, span);
-}
-
-fn ray_march_equal(ray: Ray, span: vec2f) -> vec3f {
-    let map_ray = shadow_ray(ray);
-    let step = (span.y - span.x) / f32(ray_march_params.steps);
-    var sum = vec3f(0.0);
-    for (var i = 0u; i < ray_march_params.steps; i++) {
-        let s = span.x + (f32(i) + 0.5) * step;
-        sum += ray_march_sample(ray, map_ray, s);
-    }
-    return sum * step * light_common(ray);
+    return march_equal(ray, span, ray_march_params.steps);
 }
 
 // Kulla & Fajardo 2012: s = t_p + h tan(xi), equal steps in xi, ds = h (1 + tan^2) d xi.
@@ -51,22 +40,7 @@ fn ray_march_equiangular(ray: Ray, span: vec2f) -> vec3f {
     for (var i = 0u; i < ray_march_params.steps; i++) {
         let slope = tan(angles.x + (f32(i) + 0.5) * step);
         let s = projection + height * slope;
-        sum += ray_march_sample(ray, map_ray, s) * (1.0 + slope * slope);
+        sum += march_sample(ray, map_ray, s) * (1.0 + slope * slope);
     }
     return sum * step * height * light_common(ray);
-}
-
-// Visibility times the rest of the integrand at distance s, but for the common factor.
-fn ray_march_sample(ray: Ray, map_ray: ShadowRay, s: f32) -> vec3f {
-    let tint = shadow_tint(map_ray.c0 + s * map_ray.c1);
-    if all(tint == vec3f(0.0)) {
-        return vec3f(0.0);
-    }
-    let point = ray.origin + s * ray.direction;
-    let reached = tint * transmittance(frame.medium.sigma_t, s);
-    if !light_is_local() {
-        return reached * light_tint(point);
-    }
-    let incident = light_incident(point);
-    return reached * medium_scattering(-dot(incident.direction, ray.direction)) * incident.irradiance;
 }

@@ -1,0 +1,132 @@
+// Boundaries of shadow volumes: see occluder/mod.rs. Space: world, relative to the eye.
+
+@group(2) @binding(0) var<storage, read> occluder_places: array<mat4x4f>; // world (relative to the eye) from mesh
+@group(2) @binding(1) var<storage, read> occluder_corners: array<f32>;
+@group(2) @binding(2) var<storage, read> occluder_elements: array<u32>; // edges of four, or triangles of three corners
+
+const OCCLUDER_NONE: u32 = 0xffffffffu;
+// Relative error of a corner's place and of a difference of two of them.
+const OCCLUDER_ROUNDING: f32 = 2e-7;
+// What a ray that meets a piece of the boundary does.
+const OCCLUDER_ENTERS: f32 = 1.0; // the shadow, where it runs along the plane's normal
+const OCCLUDER_EITHER: f32 = 0.0;
+
+struct OccluderVertex {
+    @builtin(position) @invariant position: vec4f,
+    @location(0) @interpolate(flat) anchor: vec3f, // a point of the plane
+    @location(1) @interpolate(flat) normal: vec3f, // unit, into the shadow
+    @location(2) @interpolate(flat) side: f32, // OCCLUDER_ENTERS or OCCLUDER_EITHER
+    @location(3) @interpolate(flat) slack: f32, // how far the normal may be off [rad]
+}
+
+fn occluder_corner(index: u32, place: u32) -> vec3f {
+    let p = vec3f(occluder_corners[3u * index], occluder_corners[3u * index + 1u], occluder_corners[3u * index + 2u]);
+    return (occluder_places[place] * vec4f(p, 1.0)).xyz;
+}
+
+// The way light travels at a point; not of unit length.
+fn occluder_way(point: vec3f) -> vec3f {
+    if LIGHT_KIND == LIGHT_DIRECTIONAL {
+        return light.direction;
+    }
+    return point - light.position;
+}
+
+// On the screen, of a point (1) or a direction (0); wherever along the ray, only what lies behind the eye is clipped.
+fn occluder_project(p: vec4f) -> vec4f {
+    let camera = frame.camera;
+    let on_plane = vec2f(dot(camera.right, p.xyz), dot(camera.up, p.xyz));
+    if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
+        return vec4f((on_plane - p.w * camera.center) / camera.half_extent, 0.5 * p.w, p.w);
+    }
+    let depth = dot(camera.forward, p.xyz);
+    return vec4f((on_plane - depth * camera.center) / camera.half_extent, 0.5 * depth, depth);
+}
+
+fn occluder_nothing() -> OccluderVertex {
+    return OccluderVertex(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0);
+}
+
+// The wall of an edge: a, b and their images at infinity.
+@vertex
+fn occluder_wall(@builtin(vertex_index) i: u32, @builtin(instance_index) place: u32) -> OccluderVertex {
+    let edge = 4u * (i / 6u);
+    let a = occluder_corner(occluder_elements[edge], place);
+    let b = occluder_corner(occluder_elements[edge + 1u], place);
+    let along = b - a;
+    let way = occluder_way(a);
+    let across = cross(along, way);
+    let area = length(across);
+    // The sine of the angle between edge and light, and the rounding of what both are differences of, over it.
+    let rounded = OCCLUDER_ROUNDING * (length(a) + length(b) + length(way));
+    let slack = rounded * (length(along) + length(way)) / max(area, 1e-30);
+    var normal = across / max(area, 1e-30);
+    let c = occluder_elements[edge + 2u];
+    let d = occluder_elements[edge + 3u];
+    var side = OCCLUDER_EITHER;
+    if c != OCCLUDER_NONE {
+        let inside = occluder_side(a, normal, slack, occluder_corner(c, place));
+        var other = inside;
+        if d != OCCLUDER_NONE {
+            other = occluder_side(a, normal, slack, occluder_corner(d, place));
+        }
+        if inside * other < 0.0 {
+            return occluder_nothing();
+        }
+        if inside * other > 0.0 {
+            side = OCCLUDER_ENTERS;
+            normal *= inside;
+        }
+    }
+    // a b A, b B A
+    let corner = i % 6u;
+    let is_a = corner == 0u || corner == 2u || corner == 5u;
+    let is_far = corner == 2u || corner >= 4u;
+    let point = select(b, a, is_a);
+    let place_of = select(vec4f(point, 1.0), vec4f(occluder_way(point), 0.0), is_far);
+    return OccluderVertex(occluder_project(place_of), a, normal, side, slack);
+}
+
+// 1 or -1 where a point surely lies before or behind a plane, else 0.
+fn occluder_side(anchor: vec3f, normal: vec3f, slack: f32, point: vec3f) -> f32 {
+    let offset = point - anchor;
+    let rounded = slack * length(offset) + OCCLUDER_ROUNDING * (length(point) + length(anchor));
+    let height = dot(normal, offset);
+    return select(0.0, sign(height), abs(height) > rounded);
+}
+
+fn occluder_triangle(i: u32, place: u32) -> array<vec3f, 3> {
+    let first = i - i % 3u;
+    return array<vec3f, 3>(
+        occluder_corner(occluder_elements[first], place),
+        occluder_corner(occluder_elements[first + 1u], place),
+        occluder_corner(occluder_elements[first + 2u], place),
+    );
+}
+
+// The triangles themselves.
+@vertex
+fn occluder_cap(@builtin(vertex_index) i: u32, @builtin(instance_index) place: u32) -> OccluderVertex {
+    let p = occluder_triangle(i, place);
+    let across = cross(p[1] - p[0], p[2] - p[0]);
+    let area = length(across);
+    let longest = max(length(p[1] - p[0]), length(p[2] - p[0]));
+    let rounded = OCCLUDER_ROUNDING * (length(p[0]) + length(p[1]) + length(p[2]));
+    let slack = 2.0 * rounded * longest / max(area, 1e-30);
+    var normal = across / max(area, 1e-30);
+    let way = occluder_way(p[0]);
+    let inwards = dot(normal, way);
+    var side = OCCLUDER_EITHER;
+    if abs(inwards) > slack * length(way) {
+        side = OCCLUDER_ENTERS;
+        normal *= sign(inwards);
+    }
+    return OccluderVertex(occluder_project(vec4f(p[i % 3u], 1.0)), p[0], normal, side, slack);
+}
+
+// Their images at infinity, which rays reach that stay in the shadow.
+@vertex
+fn occluder_far_cap(@builtin(vertex_index) i: u32, @builtin(instance_index) place: u32) -> @builtin(position) vec4f {
+    let p = occluder_triangle(i, place);
+    return occluder_project(vec4f(occluder_way(p[i % 3u]), 0.0));
+}

@@ -1,0 +1,38 @@
+// Which pixels of this frame are kept at all, before any is looked at.
+
+@group(2) @binding(1) var<storage, read_write> decide_state: ReuseState;
+@group(2) @binding(2) var<storage, read_write> decide_dispatches: array<u32>;
+
+// Masks that cover more than this share of the picture cost more than they save.
+const DECIDE_TOO_MUCH: f32 = 0.7;
+// Frames until such a mask is asked for again.
+const DECIDE_REST: u32 = 30u;
+
+@compute @workgroup_size(1)
+fn decide() {
+    let pixels = reuse.pixels.x * reuse.pixels.y;
+    let stale = atomicLoad(&decide_state.stale);
+    let covered = select(stale, pixels, reuse.reach == REUSE_PICTURE && stale > 0u);
+    if decide_state.mode == REUSE_MASKED && f32(covered) > DECIDE_TOO_MUCH * f32(pixels) {
+        decide_state.rest = DECIDE_REST;
+    }
+    let is_new = decide_state.generation != reuse.generation;
+    var mode = REUSE_MASKED;
+    if is_new || decide_state.kept >= reuse.frames {
+        mode = REUSE_REMEMBER;
+    }
+    if decide_state.rest > 0u {
+        decide_state.rest -= 1u;
+        mode = select(REUSE_OFF, REUSE_REMEMBER, decide_state.rest == 0u);
+    }
+    decide_state.kept = select(0u, decide_state.kept + 1u, mode == REUSE_MASKED);
+    decide_state.generation = reuse.generation;
+    decide_state.mode = mode;
+    atomicStore(&decide_state.stale, select(pixels, 0u, mode == REUSE_MASKED));
+    for (var i = 0u; i < reuse.levels + 1u; i++) {
+        let groups = select(reuse.dispatches[i].xyz, vec3u(0u), mode == REUSE_OFF);
+        decide_dispatches[3u * i] = groups.x;
+        decide_dispatches[3u * i + 1u] = groups.y;
+        decide_dispatches[3u * i + 2u] = groups.z;
+    }
+}

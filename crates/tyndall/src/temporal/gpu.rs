@@ -1,0 +1,468 @@
+//! The passes about a technique's last one.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::{Reach, Reuse, ReuseMask, ReuseShow, history::Placed};
+use crate::{
+    effect::{CountValue, LightInputs},
+    error::PrepareError,
+    frame::Light,
+    gpu::{
+        layout,
+        pass::{Draw, FullScreen, Pass, Vertices, Work, Workgroups},
+        program::{ComputeProgram, Raster, STENCIL_FORMAT, ScreenProgram, Stencil},
+        scope::{LightScope, Shared},
+    },
+    occluder::{
+        Occluder,
+        gpu::{Places, VOLUME, VolumePrograms, draws, own},
+    },
+    validate::faces,
+};
+
+const REUSE: &str = include_str!("reuse.wgsl");
+const DECIDE: &str = include_str!("decide.wgsl");
+const BLOCKS: &str = include_str!("blocks.wgsl");
+const CHANGE: &str = include_str!("change.wgsl");
+const TILES: &str = include_str!("tiles.wgsl");
+const STENCIL: &str = include_str!("stencil.wgsl");
+const SUM: &str = include_str!("sum.wgsl");
+const SHOW: &str = include_str!("show.wgsl");
+const TOUCHED: &str = include_str!("touched.wgsl");
+
+/// `ReuseParams` of `reuse.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct ParamsUniform {
+    pub(crate) pixels: [u32; 2],
+    pub(crate) map: [u32; 2],
+    pub(crate) faces: u32,
+    pub(crate) generation: u32,
+    pub(crate) frames: u32,
+    pub(crate) mask: u32,
+    pub(crate) margin: f32,
+    pub(crate) reach: u32,
+    pub(crate) has_witness: u32,
+    pub(crate) levels: u32,
+    pub(crate) dispatches: [[u32; 4]; MAX_DISPATCHES],
+}
+
+const MAX_DISPATCHES: usize = 16;
+/// `ReuseState`: five words.
+const STATE_BYTES: u64 = 20;
+/// Where the number of stale pixels stands in it.
+const STALE: u64 = 8;
+/// Texels of a finest block's side, pixels of a tile's, invocations of a workgroup's.
+const SIDE: u32 = 8;
+/// What moving occluders are drawn on.
+const TOUCHED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// The shaders of temporal reuse.
+pub(crate) struct Programs {
+    decide: ComputeProgram,
+    change_finest: ComputeProgram,
+    change_coarser: ComputeProgram,
+    tiles: ComputeProgram,
+    stencil: ScreenProgram,
+    sum: ScreenProgram,
+    show: ScreenProgram,
+    touched: VolumePrograms,
+}
+
+impl Programs {
+    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let params = layout::uniform::<ParamsUniform>(0);
+        let written = |binding| layout::storage(binding, false);
+        let read = |binding| layout::storage(binding, true);
+        let compute = |label, wgsl: &[&str], entry_point, own: &[wgpu::BindGroupLayoutEntry]| {
+            ComputeProgram::new(device, shared, label, wgsl, entry_point, own)
+        };
+        let screen = |label, wgsl: &[&str], entry_point, own: &[wgpu::BindGroupLayoutEntry]| {
+            ScreenProgram::new(device, shared, label, wgsl, entry_point, own)
+        };
+        let change = [
+            params,
+            written(1),
+            written(2),
+            layout::uniform::<[u32; 4]>(3),
+        ];
+        let change = |entry_point| {
+            compute(
+                "reuse change",
+                &[REUSE, BLOCKS, CHANGE],
+                entry_point,
+                &change,
+            )
+        };
+        let aged = [params, read(1), read(2)];
+        let show = [
+            &aged[..],
+            &[layout::texels(3), layout::uniform::<[u32; 4]>(4)],
+        ]
+        .concat();
+        let tiles = [
+            params,
+            written(1),
+            read(2),
+            written(3),
+            written(4),
+            written(5),
+            layout::texels(6),
+        ];
+        let touched = |label, vertex| {
+            let raster = Raster {
+                vertex,
+                ..Raster::full_screen(TOUCHED_FORMAT.into())
+            };
+            screen(label, &[VOLUME, TOUCHED], "touched", &own()).drawing(raster)
+        };
+        Self {
+            decide: compute(
+                "reuse decide",
+                &[REUSE, DECIDE],
+                "decide",
+                &[params, written(1), written(2)],
+            )
+            .for_all_lights(),
+            change_finest: change("change_finest"),
+            change_coarser: change("change_coarser"),
+            tiles: compute("reuse tiles", &[REUSE, BLOCKS, TILES], "tiles", &tiles),
+            stencil: screen("reuse stencil", &[REUSE, STENCIL], "stencil", &aged).for_all_lights(),
+            sum: screen("reuse sum", &[SUM], "sum", &[layout::texels(0)]).for_all_lights(),
+            show: screen("reuse show", &[REUSE, STENCIL, SHOW], "show", &show).for_all_lights(),
+            touched: VolumePrograms {
+                wall: touched("reuse walls", "occluder_wall"),
+                cap: touched("reuse caps", "occluder_cap"),
+                far_cap: touched("reuse far caps", "occluder_far_cap"),
+            },
+        }
+    }
+}
+
+/// Refuses what cannot be kept.
+pub(crate) fn check(
+    reuse: &Reuse,
+    limits: &wgpu::Limits,
+    [width, height]: [u32; 2],
+    index: usize,
+    light: &Light,
+    inputs: &LightInputs<'_>,
+) -> Result<(), PrepareError> {
+    if reuse.mask == ReuseMask::Geometry && inputs.occluders.is_none() {
+        return Err(PrepareError::Missing {
+            field: format!("inputs.lights[{index}].occluders"),
+            reason: "the mask is drawn from what moves",
+        });
+    }
+    let texels = inputs.shadow_map.map_or(0, |map| {
+        let size = map.texture().size();
+        u64::from(size.width) * u64::from(size.height) * u64::from(faces(light))
+    });
+    let needed = 4 * texels.max(u64::from(width) * u64::from(height));
+    let limit = limits.max_storage_buffer_binding_size;
+    if needed > limit {
+        return Err(PrepareError::Limit {
+            what: format!("temporal reuse (lights[{index}])"),
+            needed,
+            limit,
+            name: "max_storage_buffer_binding_size",
+        });
+    }
+    Ok(())
+}
+
+/// What a frame knows of a light's reuse before the light's passes are made.
+pub(crate) struct Frame<'a> {
+    pub(crate) reuse: Reuse,
+    /// See [`History::generation`](super::History::generation).
+    pub(crate) generation: u32,
+    pub(crate) reach: Reach,
+    /// What moved, for the geometry's mask.
+    pub(crate) moved: &'a [Placed],
+}
+
+/// The stencil through which a light's last pass draws.
+pub(crate) fn stencil(scope: &mut LightScope<'_>) -> wgpu::TextureView {
+    picture("reuse stencil", STENCIL_FORMAT, scope)
+}
+
+/// The picture that a light's in-scatter is kept in.
+pub(crate) fn kept(scope: &mut LightScope<'_>) -> wgpu::TextureView {
+    picture("kept in-scatter", scope.shared.output, scope)
+}
+
+fn picture(
+    name: &'static str,
+    format: wgpu::TextureFormat,
+    scope: &mut LightScope<'_>,
+) -> wgpu::TextureView {
+    let size = wgpu::Extent3d {
+        width: scope.size[0],
+        height: scope.size[1],
+        depth_or_array_layers: 1,
+    };
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+        | wgpu::TextureUsages::TEXTURE_BINDING
+        | wgpu::TextureUsages::COPY_SRC;
+    scope
+        .texture(name, size, 1, format, usage)
+        .create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Buffers of one light.
+struct Buffers {
+    params: wgpu::Buffer,
+    state: wgpu::Buffer,
+    dispatches: wgpu::Buffer,
+    blocks: wgpu::Buffer,
+    map_seen: wgpu::Buffer,
+    depth_seen: wgpu::Buffer,
+    age: wgpu::Buffer,
+    witness_seen: wgpu::Buffer,
+}
+
+/// Numbers of blocks of each level's side, finest first; none without a map.
+fn levels(map: [u32; 2]) -> Vec<[u32; 2]> {
+    if map.contains(&0) {
+        return Vec::new();
+    }
+    let mut levels = vec![map.map(|n| n.div_ceil(SIDE))];
+    while let Some(last) = levels.last().filter(|last| **last != [1; 2]) {
+        levels.push(last.map(|n| n.div_ceil(2)));
+    }
+    levels
+}
+
+impl Buffers {
+    fn new(frame: &Frame<'_>, scope: &mut LightScope<'_>) -> Self {
+        let map = scope.inputs.shadow_map.map(|map| map.texture().size());
+        let map = map.map_or([0; 2], |size| [size.width, size.height]);
+        let faces = if map == [0; 2] { 0 } else { faces(scope.light) };
+        let levels = levels(map);
+        let params = params(frame, map, faces, &levels, scope);
+        let blocks: u64 = levels
+            .iter()
+            .map(|[w, h]| u64::from(*w) * u64::from(*h))
+            .sum();
+        let texels = u64::from(map[0]) * u64::from(map[1]) * u64::from(faces);
+        let pixels = u64::from(scope.size[0]) * u64::from(scope.size[1]);
+        let witnessed = if scope.witness.is_some() { pixels } else { 1 };
+        let state = {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+            let key = (Some(scope.index), "reuse state");
+            scope.pool.buffer(scope.device, key, STATE_BYTES, usage)
+        };
+        Self {
+            params: scope.uniform("reuse params", &params),
+            state,
+            dispatches: scope.indirect("reuse dispatches", MAX_DISPATCHES as u64),
+            blocks: scope.storage("reuse blocks", 8 * (blocks * u64::from(faces)).max(1)),
+            map_seen: scope.storage("reuse shadow map", 4 * texels.max(1)),
+            depth_seen: scope.storage("reuse depth", 4 * pixels),
+            age: scope.storage("reuse age", 4 * pixels),
+            witness_seen: scope.storage("reuse witness", 4 * witnessed),
+        }
+    }
+}
+
+fn params(
+    frame: &Frame<'_>,
+    map: [u32; 2],
+    faces: u32,
+    levels: &[[u32; 2]],
+    scope: &LightScope<'_>,
+) -> ParamsUniform {
+    let tiles = scope.size.map(|n| n.div_ceil(SIDE));
+    let groups = levels.iter().map(|side| {
+        let [columns, rows] = side.map(|n| n.div_ceil(SIDE));
+        [columns, rows, faces, 0]
+    });
+    let mut dispatches = [[0; 4]; MAX_DISPATCHES];
+    let all = std::iter::once([tiles[0], tiles[1], 1, 0]).chain(groups);
+    for (slot, groups) in dispatches.iter_mut().zip(all) {
+        *slot = groups;
+    }
+    let (reach, margin) = match frame.reach {
+        Reach::Pixels(margin) => (0, margin),
+        Reach::Picture => (1, 0.0),
+    };
+    ParamsUniform {
+        pixels: scope.size,
+        map,
+        faces,
+        generation: frame.generation,
+        frames: frame.reuse.frames.unwrap_or(u32::MAX),
+        mask: match frame.reuse.mask {
+            ReuseMask::Change => 0,
+            ReuseMask::Geometry => 1,
+        },
+        margin,
+        reach,
+        has_witness: u32::from(scope.witness.is_some()),
+        levels: levels.len() as u32,
+        dispatches,
+    }
+}
+
+/// A light's passes with those that find what is stale before the last one.
+pub(crate) fn wrap(
+    mut passes: Vec<Pass>,
+    frame: &Frame<'_>,
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+) -> Vec<Pass> {
+    let last = passes.pop();
+    if frame.reuse.mask == ReuseMask::Geometry {
+        passes.push(touch(frame.moved, programs, scope));
+    }
+    let buffers = Buffers::new(frame, scope);
+    passes.push(find(&buffers, programs, scope));
+    if let Some(stencil) = scope.stencil.clone() {
+        passes.push(mark(&buffers, stencil, programs, scope));
+    }
+    passes.extend(last);
+    let (buffer, offset) = (buffers.state, STALE);
+    scope.count("stale pixels,", CountValue::Written { buffer, offset });
+    passes
+}
+
+/// Draws what moved; the picture is the last pass's witness then.
+fn touch(moved: &[Placed], programs: &Programs, scope: &mut LightScope<'_>) -> Pass {
+    let target = picture("reuse touched", TOUCHED_FORMAT, scope);
+    let occluders: Vec<Occluder<'_>> = moved.iter().map(Placed::as_occluder).collect();
+    let places = Places::new("reuse places", &occluders, scope);
+    scope.witness = Some(target.clone());
+    Pass {
+        name: scope.pass_name("what moved"),
+        work: Work::Draw {
+            target,
+            draws: draws(&occluders, &places, &programs.touched, scope),
+        },
+    }
+}
+
+/// The dispatches that leave the pixels' ages.
+fn find(buffers: &Buffers, programs: &Programs, scope: &mut LightScope<'_>) -> Pass {
+    let levels: Vec<[u32; 4]> = (0..MAX_DISPATCHES as u32).map(|k| [k, 0, 0, 0]).collect();
+    let levels = scope.blocks("reuse levels", &levels);
+    let [params, state, blocks] =
+        [&buffers.params, &buffers.state, &buffers.blocks].map(|b| b.as_entire_binding());
+    let count = scope.inputs.shadow_map.map_or(0, |map| {
+        let size = map.texture().size();
+        self::levels([size.width, size.height]).len()
+    });
+    let indirect =
+        |index: usize| Workgroups::Indirect(buffers.dispatches.clone(), 12 * index as u64);
+    let decide = [
+        params.clone(),
+        state.clone(),
+        buffers.dispatches.as_entire_binding(),
+    ];
+    let mut dispatches = vec![scope.dispatch(&programs.decide, &decide, [1; 3])];
+    for level in 0..count {
+        let resources = [
+            params.clone(),
+            blocks.clone(),
+            buffers.map_seen.as_entire_binding(),
+            levels.binding(level),
+        ];
+        let program = if level == 0 {
+            &programs.change_finest
+        } else {
+            &programs.change_coarser
+        };
+        dispatches.push(scope.dispatch(program, &resources, indirect(1 + level)));
+    }
+    let absent = scope.shared.absent.light.clone();
+    let witness = scope.witness.clone().unwrap_or(absent);
+    let tiles = [
+        params,
+        state,
+        blocks,
+        buffers.depth_seen.as_entire_binding(),
+        buffers.age.as_entire_binding(),
+        buffers.witness_seen.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&witness),
+    ];
+    dispatches.push(scope.dispatch(&programs.tiles, &tiles, indirect(0)));
+    Pass::compute(scope.pass_name("find stale pixels"), dispatches)
+}
+
+/// The stencil of the pixels that are stale.
+fn mark(
+    buffers: &Buffers,
+    stencil: wgpu::TextureView,
+    programs: &Programs,
+    scope: &LightScope<'_>,
+) -> Pass {
+    let resources = [&buffers.params, &buffers.state, &buffers.age].map(|b| b.as_entire_binding());
+    let program = &programs.stencil;
+    let draw = Draw {
+        pipeline: program.with_stencil(scope.device, scope.variant, Stencil::Written),
+        groups: scope.groups(program.bind(scope.device, &resources)),
+        vertices: Vertices::Direct {
+            vertices: 3,
+            instances: 0..1,
+        },
+    };
+    Pass {
+        name: scope.pass_name("mark stale pixels"),
+        work: Work::Stencil { stencil, draw },
+    }
+}
+
+/// The pass that adds a light's kept picture, or what is shown of its reuse, to the lights before; none where the kept
+/// picture is all there is to show.
+pub(crate) fn add(
+    frame: &Frame<'_>,
+    kept: &wgpu::TextureView,
+    target: wgpu::TextureView,
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+) -> Pass {
+    let own = [wgpu::BindingResource::TextureView(kept)];
+    let what = match frame.reuse.show {
+        ReuseShow::Light => {
+            let draw = scope.draw(&programs.sum, &own, target);
+            return of_draw(scope.pass_name("add light"), draw);
+        }
+        ReuseShow::Mask => 1,
+        ReuseShow::Age => 2,
+    };
+    let buffers = Buffers::new(frame, scope);
+    let what = scope.uniform("reuse show", &[what, 0u32, 0, 0]);
+    let [kept] = own;
+    let own = [
+        buffers.params.as_entire_binding(),
+        buffers.state.as_entire_binding(),
+        buffers.age.as_entire_binding(),
+        kept,
+        what.as_entire_binding(),
+    ];
+    let draw = scope.draw(&programs.show, &own, target);
+    of_draw(scope.pass_name("show reuse"), draw)
+}
+
+fn of_draw(name: String, draw: FullScreen) -> Pass {
+    Pass {
+        name,
+        work: Work::FullScreen(vec![draw]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_end_at_one_block_and_fit_the_dispatches() {
+        for (map, expected) in [
+            ([0, 0], vec![]),
+            ([1, 1], vec![[1, 1]]),
+            ([64, 20], vec![[8, 3], [4, 2], [2, 1], [1, 1]]),
+        ] {
+            assert_eq!(levels(map), expected);
+        }
+        assert!(levels([16_384; 2]).len() < MAX_DISPATCHES);
+    }
+}

@@ -1,0 +1,37 @@
+// What all passes of temporal reuse share: see temporal/mod.rs.
+
+struct ReuseParams {
+    pixels: vec2u,
+    map: vec2u, // texels of a face
+    faces: u32, // 0 where there is no shadow map
+    generation: u32, // another one whenever more than depth and shadow map has changed
+    frames: u32, // kept in a row
+    mask: u32, // REUSE_CHANGE or REUSE_GEOMETRY
+    margin: f32, // how far from its own ray a pixel looks [pixels]
+    reach: u32, // REUSE_RAY or REUSE_PICTURE
+    has_witness: u32, // 1 where the last pass reads a picture besides
+    levels: u32, // of blocks
+    dispatches: array<vec4u, 16>, // workgroups of what decides the mask
+}
+
+const REUSE_CHANGE: u32 = 0u;
+const REUSE_GEOMETRY: u32 = 1u;
+const REUSE_RAY: u32 = 0u;
+const REUSE_PICTURE: u32 = 1u;
+
+// What a light's picture keeps from frame to frame.
+struct ReuseState {
+    generation: u32,
+    kept: u32, // frames since the last full one
+    stale: atomic<u32>, // pixels that this frame computes
+    mode: u32, // REUSE_OFF and so on
+    rest: u32, // frames that the mask is not asked for
+}
+
+// This frame computes all pixels and looks at nothing, computes all and remembers what they were computed from, or
+// computes those that the mask covers.
+const REUSE_OFF: u32 = 0u;
+const REUSE_REMEMBER: u32 = 1u;
+const REUSE_MASKED: u32 = 2u;
+
+@group(2) @binding(0) var<uniform> reuse: ReuseParams;

@@ -1,0 +1,173 @@
+// Which pixels are stale. A tile of 8 x 8 pixels is asked as one: 64 slabs of the beam that its rays fill, each by one
+// invocation, are held against the blocks of the shadow map that changed. Depth is compared pixel by pixel.
+
+@group(2) @binding(1) var<storage, read_write> tiles_state: ReuseState;
+@group(2) @binding(2) var<storage, read> tiles_blocks: array<vec2f>;
+@group(2) @binding(3) var<storage, read_write> tiles_depth: array<f32>;
+@group(2) @binding(4) var<storage, read_write> tiles_age: array<u32>; // frames since a pixel was computed
+@group(2) @binding(5) var<storage, read_write> tiles_seen: array<u32>; // the witness of the frame before
+@group(2) @binding(6) var tiles_witness: texture_2d<f32>;
+
+const TILES_SIDE: u32 = 8u;
+const TILES_SLABS: f32 = 64.0;
+// Rounding of places on the map [texels] and of depths, absolute and relative.
+const TILES_TEXELS: f32 = 1.0;
+const TILES_DEPTH: vec2f = vec2f(2e-6, 1e-5);
+
+var<workgroup> tiles_farthest: atomic<u32>;
+var<workgroup> tiles_touched: atomic<u32>;
+var<workgroup> tiles_stale: atomic<u32>;
+
+@compute @workgroup_size(8, 8)
+fn tiles(
+    @builtin(workgroup_id) tile: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let pixel = TILES_SIDE * tile.xy + local.xy;
+    let is_inside = all(pixel < reuse.pixels);
+    let place = pixel.y * reuse.pixels.x + pixel.x;
+    var is_stale = false;
+    if is_inside {
+        let depth = textureLoad(frame_depth, pixel, 0);
+        atomicMax(&tiles_farthest, bitcast<u32>(max(camera_view_depth(depth), 0.0)));
+        is_stale = tiles_pixel_changed(pixel, place, depth);
+    }
+    workgroupBarrier();
+    // Once a slab meets a change, the whole tile is stale.
+    if reuse.mask == REUSE_CHANGE && reuse.faces > 0u {
+        let farthest = bitcast<f32>(atomicLoad(&tiles_farthest));
+        let slab = farthest * vec2f(f32(lane), f32(lane) + 1.0) / TILES_SLABS;
+        if tiles_slab_changed(vec2f(TILES_SIDE * tile.xy), slab) {
+            atomicStore(&tiles_touched, 1u);
+        }
+    }
+    workgroupBarrier();
+    let is_computed = tiles_state.mode != REUSE_MASKED || is_stale || atomicLoad(&tiles_touched) != 0u;
+    if is_inside {
+        tiles_age[place] = select(min(tiles_age[place] + 1u, 0xffffu), 0u, is_computed);
+        if is_computed {
+            atomicAdd(&tiles_stale, 1u);
+        }
+    }
+    workgroupBarrier();
+    if lane == 0u && tiles_state.mode == REUSE_MASKED {
+        let stale = atomicLoad(&tiles_stale);
+        if stale > 0u {
+            atomicAdd(&tiles_state.stale, stale);
+        }
+    }
+}
+
+// Whether what the pixel's last pass reads of this very pixel has changed; remembers it.
+fn tiles_pixel_changed(pixel: vec2u, place: u32, depth: f32) -> bool {
+    if reuse.mask == REUSE_GEOMETRY {
+        return textureLoad(tiles_witness, pixel, 0).x > 0.0;
+    }
+    var is_changed = bitcast<u32>(tiles_depth[place]) != bitcast<u32>(depth);
+    tiles_depth[place] = depth;
+    if reuse.has_witness == 1u {
+        let witness = pack2x16float(textureLoad(tiles_witness, pixel, 0).xy);
+        is_changed = is_changed || tiles_seen[place] != witness;
+        tiles_seen[place] = witness;
+    }
+    return is_changed;
+}
+
+// Eight corners of a slab of the beam: four rays round the tile, at two view depths.
+fn tiles_slab_changed(corner: vec2f, depths: vec2f) -> bool {
+    var points: array<vec3f, 8>;
+    for (var i = 0u; i < 4u; i++) {
+        let side = vec2f(f32(i & 1u), f32(i >> 1u));
+        let place = corner + mix(vec2f(-reuse.margin), vec2f(f32(TILES_SIDE) + reuse.margin), side);
+        let ray = tiles_ray(place);
+        points[i] = ray.origin + depths.x * ray.direction;
+        points[i + 4u] = ray.origin + depths.y * ray.direction;
+    }
+    for (var face = 0u; face < reuse.faces; face++) {
+        if tiles_face_changed(points, face) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// A ray by view depth: its direction is not of unit length.
+fn tiles_ray(place: vec2f) -> Ray {
+    let camera = frame.camera;
+    let on_plane = camera.center + camera.half_extent * vec2f(2.0, -2.0) * (place / camera.size - 0.5);
+    let offset = on_plane.x * camera.right + on_plane.y * camera.up;
+    if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
+        return Ray(offset, 1.0, camera.forward);
+    }
+    return Ray(vec3f(0.0), 1.0, camera.forward + offset);
+}
+
+// A point in a face's clip space, depth 1 nearest to the light; of a cube's faces see shadow_cube_point.
+fn tiles_clip(point: vec3f, face: u32) -> vec4f {
+    if SHADOW_KIND != SHADOW_CUBE {
+        return light.clip_from_world * vec4f(point, 1.0);
+    }
+    let q = point - light.position;
+    var p = vec3f(q.x, q.y, q.z);
+    switch face {
+        case 0u: { p = vec3f(-q.z, q.y, q.x); }
+        case 1u: { p = vec3f(q.z, q.y, -q.x); }
+        case 2u: { p = vec3f(q.x, -q.z, q.y); }
+        case 3u: { p = vec3f(q.x, q.z, -q.y); }
+        case 5u: { p = vec3f(-q.x, q.y, -q.z); }
+        default: {}
+    }
+    return vec4f(p.xy, light.cube_depth.x + light.cube_depth.y * p.z, p.z);
+}
+
+fn tiles_face_changed(points: array<vec3f, 8>, face: u32) -> bool {
+    var least = vec3f(1e30);
+    var most = vec3f(-1e30);
+    var nearest_w = 1e30;
+    // On which side of the face's four planes all points lie.
+    var outside = vec4<bool>(true);
+    for (var i = 0u; i < 8u; i++) {
+        let clip = tiles_clip(points[i], face);
+        let room = TILES_TEXELS * 2.0 / vec2f(reuse.map) * abs(clip.w) + abs(clip.w) * 1e-6;
+        outside = outside & (vec4f(clip.xy, -clip.xy) > vec4f(clip.w + room, clip.w + room));
+        let on_map = vec3f(0.5 + vec2f(0.5, -0.5) * clip.xy / clip.w, clip.z / clip.w);
+        least = min(least, on_map);
+        most = max(most, on_map);
+        nearest_w = min(nearest_w, clip.w);
+    }
+    if any(outside) {
+        return false;
+    }
+    let size = vec2f(reuse.map);
+    // Through the light's own plane: anywhere on the face, at any depth.
+    let is_whole = !(nearest_w > 0.0);
+    let first = select(floor(least.xy * size - TILES_TEXELS), vec2f(0.0), is_whole);
+    let last = select(floor(most.xy * size + TILES_TEXELS), size, is_whole);
+    let depths = select(vec2f(least.z, most.z), vec2f(-1e30, 1e30), is_whole);
+    return tiles_blocks_changed(
+        vec2u(clamp(first, vec2f(0.0), size - 1.0)),
+        vec2u(clamp(last, vec2f(0.0), size - 1.0)),
+        depths,
+        face,
+    );
+}
+
+// Whether texels from first to last changed visibility between these depths.
+fn tiles_blocks_changed(first: vec2u, last: vec2u, depths: vec2f, face: u32) -> bool {
+    let blocks = vec4u(first, last) / BLOCKS_SIDE;
+    let span = max(blocks.z - blocks.x, blocks.w - blocks.y);
+    // The level at which four blocks hold them.
+    let level = min(select(firstLeadingBit(span - 1u) + 1u, 0u, span <= 1u), reuse.levels - 1u);
+    let size = blocks_size(level);
+    let start = blocks_start(level) + face * size.x * size.y;
+    let at = blocks >> vec4u(level);
+    var range = BLOCKS_NOTHING;
+    for (var k = 0u; k < 4u; k++) {
+        let place = min(at.xy + vec2u(k & 1u, k >> 1u), at.zw);
+        let found = tiles_blocks[start + place.y * size.x + place.x];
+        range = vec2f(min(range.x, found.x), max(range.y, found.y));
+    }
+    let room = TILES_DEPTH.x + TILES_DEPTH.y * abs(depths);
+    return range.x <= range.y && depths.y + room.y >= range.x && depths.x - room.x <= range.y;
+}
