@@ -99,10 +99,11 @@ pub mod physics;
 pub mod shadow;
 pub mod techniques;
 mod validate;
+mod voxels;
 
 #[cfg(feature = "gpu")]
 pub use effect::{
     Count, CountValue, CreateError, Effect, EffectOptions, EffectView, FrameInputs, LightInputs,
-    OutputPrecision,
+    OutputPrecision, PointCloud,
 };
 pub use error::PrepareError;

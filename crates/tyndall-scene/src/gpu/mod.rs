@@ -13,6 +13,7 @@ mod glass;
 mod material;
 mod mesh;
 mod pipeline;
+mod points;
 pub mod readback;
 mod renderer;
 mod shade;
@@ -26,6 +27,7 @@ mod view;
 
 pub use device::{NoAdapter, connect};
 pub use error::GpuSceneError;
+pub use points::upload_point_cloud;
 pub use renderer::SceneRenderer;
 pub use targets::{GBufferTargets, GlassMapTarget, ShadowMapTarget};
 pub use texture::upload_light_texture;

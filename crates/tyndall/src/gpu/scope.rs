@@ -68,6 +68,24 @@ pub(crate) struct LightScope<'a> {
     pub(crate) counts: &'a mut Vec<Count>,
 }
 
+/// Uniform blocks in one buffer.
+pub(crate) struct Blocks<T> {
+    pub(crate) values: Vec<T>,
+    buffer: wgpu::Buffer,
+    pitch: u64,
+}
+
+impl<T> Blocks<T> {
+    /// One of them.
+    pub(crate) fn binding(&self, index: u32) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.buffer,
+            offset: u64::from(index) * self.pitch,
+            size: std::num::NonZeroU64::new(size_of::<T>() as u64),
+        })
+    }
+}
+
 impl LightScope<'_> {
     /// The airlight tables of the frame's medium, one layer a component.
     pub(crate) fn airlight(&self) -> wgpu::TextureView {
@@ -83,6 +101,31 @@ impl LightScope<'_> {
     ) -> wgpu::Buffer {
         self.pool
             .uniform(self.device, self.queue, (Some(self.index), name), value)
+    }
+
+    /// Blocks of one kind in a uniform buffer of this light, for dispatches that take one each.
+    pub(crate) fn blocks<T: bytemuck::Pod>(
+        &mut self,
+        name: &'static str,
+        values: Vec<T>,
+    ) -> Blocks<T> {
+        let alignment = u64::from(self.device.limits().min_uniform_buffer_offset_alignment);
+        let pitch = (size_of::<T>() as u64).next_multiple_of(alignment);
+        let mut bytes = vec![0; values.len() * pitch as usize];
+        for (block, value) in bytes.chunks_exact_mut(pitch as usize).zip(&values) {
+            block[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(value));
+        }
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let key = (Some(self.index), name);
+        let buffer = self
+            .pool
+            .buffer(self.device, key, bytes.len() as u64, usage);
+        self.queue.write_buffer(&buffer, 0, &bytes);
+        Blocks {
+            values,
+            buffer,
+            pitch,
+        }
     }
 
     /// A storage buffer of this light.

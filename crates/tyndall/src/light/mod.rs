@@ -1,6 +1,8 @@
 //! Lights: how much of one reaches a point, and from where, if nothing blocks it.
 
 pub mod cone;
+#[cfg(feature = "gpu")]
+pub(crate) mod halton;
 pub mod texture;
 
 use glam::DVec3;

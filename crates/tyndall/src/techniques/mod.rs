@@ -1,12 +1,14 @@
 //! The techniques, and the one table of them. Each folder's first page is its manual.
 
 pub mod epipolar_sampling;
+pub mod imperfect_voxelized;
 pub mod incremental;
 pub mod light_volume;
 pub mod min_max;
 mod params;
 pub mod ray_march;
 pub mod reference;
+pub mod voxelized;
 
 use crate::{cpu::CpuScene, error::PrepareError, frame::Frame};
 use params::Parameters;
@@ -37,6 +39,10 @@ pub enum Technique {
     LightVolume(light_volume::Params),
     /// Epipolar sampling.
     Epipolar(epipolar_sampling::Params),
+    /// Voxelized shadow volumes.
+    Voxelized(voxelized::Params),
+    /// Imperfect voxelized shadow volumes.
+    ImperfectVoxelized(imperfect_voxelized::Params),
 }
 
 /// Which backends a technique runs on.
@@ -97,6 +103,8 @@ pub const TABLE: &[TechniqueInfo] = &[
     ray_march::INFO,
     epipolar_sampling::INFO,
     light_volume::INFO,
+    voxelized::INFO,
+    imperfect_voxelized::INFO,
     incremental::INFO,
     reference::INFO,
 ];
@@ -131,6 +139,8 @@ impl Technique {
             Self::Incremental(_) => &incremental::INFO,
             Self::LightVolume(_) => &light_volume::INFO,
             Self::Epipolar(_) => &epipolar_sampling::INFO,
+            Self::Voxelized(_) => &voxelized::INFO,
+            Self::ImperfectVoxelized(_) => &imperfect_voxelized::INFO,
         }
     }
 
@@ -143,6 +153,8 @@ impl Technique {
             Self::Incremental(p) => p.list(),
             Self::LightVolume(p) => p.list(),
             Self::Epipolar(p) => p.list(),
+            Self::Voxelized(p) => p.list(),
+            Self::ImperfectVoxelized(p) => p.list(),
         }
     }
 
@@ -158,6 +170,8 @@ impl Technique {
             Self::Incremental(p) => p.set(key, value),
             Self::LightVolume(p) => p.set(key, value),
             Self::Epipolar(p) => p.set(key, value),
+            Self::Voxelized(p) => p.set(key, value),
+            Self::ImperfectVoxelized(p) => p.set(key, value),
         }
     }
 
@@ -180,7 +194,10 @@ impl Technique {
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
             // The table says they are the GPU's.
-            Self::LightVolume(_) | Self::Epipolar(_) => Err(PrepareError::Unsupported {
+            Self::LightVolume(_)
+            | Self::Epipolar(_)
+            | Self::Voxelized(_)
+            | Self::ImperfectVoxelized(_) => Err(PrepareError::Unsupported {
                 technique: self.info().name,
                 what: "its work on the CPU".into(),
             }),
@@ -196,6 +213,8 @@ pub(crate) struct Programs {
     min_max: OnceLock<min_max::gpu::Programs>,
     light_volume: OnceLock<light_volume::gpu::Programs>,
     epipolar: OnceLock<epipolar_sampling::gpu::Programs>,
+    voxelized: OnceLock<voxelized::gpu::Programs>,
+    imperfect_voxelized: OnceLock<imperfect_voxelized::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -213,6 +232,10 @@ impl Technique {
             Self::LightVolume(p) => light_volume::gpu::check(p, limits, index, light, inputs),
             Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
             Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
+            Self::Voxelized(p) => voxelized::gpu::check(p, limits, index),
+            Self::ImperfectVoxelized(p) => {
+                imperfect_voxelized::gpu::check(p, limits, size, index, light, inputs)
+            }
             _ => Ok(()),
         }
     }
@@ -240,6 +263,15 @@ impl Technique {
             Self::Epipolar(p) => {
                 let make = || epipolar_sampling::gpu::Programs::new(device, shared);
                 epipolar_sampling::gpu::passes(p, programs.epipolar.get_or_init(make), scope)
+            }
+            Self::Voxelized(p) => {
+                let make = || voxelized::gpu::Programs::new(device, shared);
+                voxelized::gpu::passes(p, programs.voxelized.get_or_init(make), scope)
+            }
+            Self::ImperfectVoxelized(p) => {
+                let make = || imperfect_voxelized::gpu::Programs::new(device, shared);
+                let programs = programs.imperfect_voxelized.get_or_init(make);
+                imperfect_voxelized::gpu::passes(p, programs, scope)
             }
             // Refused by the table: they have no GPU side.
             Self::Reference(_) | Self::Incremental(_) => Vec::new(),
