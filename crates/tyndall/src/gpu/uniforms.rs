@@ -297,7 +297,7 @@ mod tests {
     #[test]
     fn blocks_are_laid_out_as_in_wgsl() {
         let own = [
-            ray_march::gpu::RAY_MARCH,
+            ray_march::gpu::PARAMS,
             light_volume::gpu::CUBE,
             light_volume::gpu::MESH,
             light_volume::gpu::SPLITS,

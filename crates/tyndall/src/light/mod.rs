@@ -163,6 +163,11 @@ impl<'a> LightModel<'a> {
         }
     }
 
+    /// True of a sample of a rectangle.
+    pub(crate) fn is_of_area(&self) -> bool {
+        matches!(self.shape, Shape::Patch { .. })
+    }
+
     /// True where the light is the same along a view ray but for distance and angle:
     /// section 1's closed forms hold for it.
     pub fn is_plain(&self) -> bool {

@@ -17,7 +17,7 @@ use {
     crate::{
         effect::LightInputs,
         frame::Light,
-        gpu::{pass::Pass, program::ScreenProgram, scope::LightScope},
+        gpu::{pass::Pass, scope::LightScope},
     },
     std::sync::OnceLock,
 };
@@ -190,7 +190,7 @@ impl Technique {
     ) -> Result<Box<dyn crate::cpu::RayIntegrator + 'a>, PrepareError> {
         match self {
             Self::Reference(p) => reference::cpu::integrator(p, scene),
-            Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
+            Self::RayMarch(p) => ray_march::cpu::integrator(p, scene),
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
             // The table says they are the GPU's.
@@ -209,7 +209,7 @@ impl Technique {
 #[cfg(feature = "gpu")]
 #[derive(Default)]
 pub(crate) struct Programs {
-    ray_march: OnceLock<ScreenProgram>,
+    ray_march: OnceLock<ray_march::gpu::Programs>,
     min_max: OnceLock<min_max::gpu::Programs>,
     light_volume: OnceLock<light_volume::gpu::Programs>,
     epipolar: OnceLock<epipolar_sampling::gpu::Programs>,
@@ -232,9 +232,10 @@ impl Technique {
             Self::LightVolume(p) => light_volume::gpu::check(p, limits, index, light, inputs),
             Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
             Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
+            Self::RayMarch(p) => ray_march::gpu::check(p, limits, size, index, light, inputs),
             Self::Voxelized(p) => voxelized::gpu::check(p, limits, index),
             Self::ImperfectVoxelized(p) => {
-                imperfect_voxelized::gpu::check(p, limits, size, index, light, inputs)
+                imperfect_voxelized::gpu::check(p, limits, size, index, inputs)
             }
             _ => Ok(()),
         }
@@ -245,9 +246,8 @@ impl Technique {
         let (device, shared) = (scope.device, scope.shared);
         match self {
             Self::RayMarch(p) => {
-                let program = &programs.ray_march;
-                let program = program.get_or_init(|| ray_march::gpu::program(device, shared));
-                ray_march::gpu::passes(p, program, scope)
+                let make = || ray_march::gpu::Programs::new(device, shared);
+                ray_march::gpu::passes(p, programs.ray_march.get_or_init(make), scope)
             }
             Self::MinMax(p) => {
                 let programs = &programs.min_max;

@@ -4,7 +4,7 @@ use tyndall_testkit::{device::device_or_skip, samples::in_box, wgsl};
 use wgpu::util::DeviceExt;
 
 use super::{
-    gpu::{CLEAR, RUNS, SCAN, VOXELS},
+    gpu::{RUNS, SCAN, VOXELS},
     twin::{self, Grid},
 };
 
@@ -62,43 +62,6 @@ fn scan_is_the_or_of_all_before() {
             assert!(expected.is_dark == found.is_dark, "{side}");
         }
         assert!(changed > side * side, "the scan has something to do");
-    }
-}
-
-#[test]
-fn clear_sets_every_word() {
-    let Some(gpu) = device_or_skip("clear.wgsl") else {
-        return;
-    };
-    for (count, groups) in [(4, 1), (4 * 1000, 3)] {
-        let buffer = |contents: &[u8], usage| {
-            let usage = usage | wgpu::BufferUsages::COPY_SRC;
-            let init = wgpu::util::BufferInitDescriptor {
-                label: None,
-                contents,
-                usage,
-            };
-            gpu.device.create_buffer_init(&init)
-        };
-        let uniform = buffer(
-            bytemuck::bytes_of(&[7_u32, 0, 0, 0]),
-            wgpu::BufferUsages::UNIFORM,
-        );
-        let voxels = buffer(
-            bytemuck::cast_slice(&vec![1_u32; count]),
-            wgpu::BufferUsages::STORAGE,
-        );
-        wgsl::dispatch(
-            gpu,
-            &[CLEAR],
-            "voxel_clear_words",
-            &[],
-            (2, &[&uniform, &voxels]),
-            [groups, 1, 1],
-        )
-        .expect("the shader runs");
-        let found: Vec<u32> = gpu.read_buffer(&voxels).expect("readable");
-        assert_eq!(found, vec![7; count]);
     }
 }
 

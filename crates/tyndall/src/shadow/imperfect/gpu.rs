@@ -6,10 +6,13 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::{
+    effect::LightInputs,
+    error::PrepareError,
     frame::Emitter,
     gpu::{
+        fill::Fill,
         layout,
-        pass::Dispatch,
+        pass::Pass,
         program::ComputeProgram,
         scope::{Blocks, LightScope, Shared},
     },
@@ -21,11 +24,12 @@ use crate::{
 pub(crate) const IMPERFECT: &str = include_str!("imperfect.wgsl");
 /// Look-ups; needs batch, samples and maps.
 pub(crate) const LOOKUP: &str = include_str!("lookup.wgsl");
+const COLORS: &str = include_str!("colors.wgsl");
 pub(super) const SPLAT: &str = include_str!("splat.wgsl");
 pub(super) const PULL_PUSH: &str = include_str!("pull_push.wgsl");
 
-/// Points that a workgroup of `splat.wgsl` takes.
-const POINTS_A_WORKGROUP: u32 = 64;
+/// Points, or samples, that a workgroup takes.
+const THREADS: u32 = 64;
 /// Texels a side that a workgroup of `pull_push.wgsl` takes.
 const BLOCK: u32 = 16;
 /// From a sample's map to the next one's turn about the normal, in turns.
@@ -151,6 +155,54 @@ impl AreaLight {
 }
 
 impl Maps {
+    /// Of so many samples: as many at once as the device binds, or one, where each takes `bytes` besides its map.
+    pub(crate) fn new(
+        inputs: &LightInputs<'_>,
+        points: u32,
+        at_once: u32,
+        bytes: u64,
+        limits: &wgpu::Limits,
+    ) -> Self {
+        let cloud = inputs.points.map_or(0, |cloud| cloud.points.size() / 16) as u32;
+        let one = Self {
+            side: inputs.points.map_or(0, |cloud| cloud.map_side),
+            points: points.min(cloud),
+            cloud,
+            batch: 1,
+        };
+        let most = limits.max_storage_buffer_binding_size / one.bytes().max(bytes);
+        Self {
+            batch: u64::from(at_once).min(most).max(1) as u32,
+            ..one
+        }
+    }
+
+    /// Refuses what the device cannot bind: a sample's map, the points, and these bytes of `what`.
+    pub(crate) fn check(
+        &self,
+        technique: &'static str,
+        index: usize,
+        limits: &wgpu::Limits,
+        others: &[(&str, u64)],
+    ) -> Result<(), PrepareError> {
+        let limit = limits.max_storage_buffer_binding_size;
+        let own = [
+            ("map of a sample", self.bytes() / u64::from(self.batch)),
+            ("points", 16 * u64::from(self.cloud)),
+        ];
+        for &(what, needed) in own.iter().chain(others) {
+            if needed > limit {
+                return Err(PrepareError::Limit {
+                    what: format!("{what} of technique `{technique}` (lights[{index}])"),
+                    needed,
+                    limit,
+                    name: "max_storage_buffer_binding_size",
+                });
+            }
+        }
+        Ok(())
+    }
+
     /// Bytes of the maps of a batch.
     pub(crate) fn bytes(&self) -> u64 {
         (4 * u64::from(self.side).pow(2) * u64::from(self.batch)).max(16)
@@ -159,82 +211,96 @@ impl Maps {
 
 /// What all imperfect shadow maps need.
 pub(crate) struct Programs {
+    fill: Fill,
+    colors: ComputeProgram,
     splat: ComputeProgram,
     pull_push: ComputeProgram,
 }
 
+/// A light's samples, and the maps of a batch of them.
+pub(crate) struct Buffers {
+    pub(crate) batches: Blocks<BatchUniform>,
+    pub(crate) samples: wgpu::Buffer,
+    /// Intensity of each sample along the normal [W/sr].
+    pub(crate) colors: wgpu::Buffer,
+    pub(crate) maps: wgpu::Buffer,
+}
+
 impl Programs {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let own = [
-            layout::uniform::<BatchUniform>(0),
-            layout::storage(1, true),
-            layout::storage(2, true),
-            layout::storage(3, false),
-        ];
-        let modules = [IMPERFECT, SPLAT];
-        let splat = ComputeProgram::new(
-            device,
-            shared,
-            "splat points",
-            &modules,
-            "imperfect_splat",
-            &own,
-        );
-        let own = [
-            layout::uniform::<BatchUniform>(0),
-            layout::storage(1, false),
-        ];
-        let modules = [IMPERFECT, PULL_PUSH];
+        let batch = layout::uniform::<BatchUniform>(0);
+        let read = |binding| layout::storage(binding, true);
+        let write = |binding| layout::storage(binding, false);
+        let program = |label, wgsl, entry_point, own: &[_]| {
+            ComputeProgram::new(device, shared, label, &[IMPERFECT, wgsl], entry_point, own)
+        };
+        let own = [batch, read(1), write(2)];
+        let colors = program("sample light", COLORS, "imperfect_color", &own);
+        let own = [batch, read(1), read(2), write(3)];
+        let splat = program("splat points", SPLAT, "imperfect_splat", &own).for_all_lights();
+        let own = [batch, write(1)];
+        let pull_push = program("pull-push", PULL_PUSH, "pull_push", &own).for_all_lights();
         Self {
-            splat: splat.for_all_lights(),
-            pull_push: ComputeProgram::new(
-                device,
-                shared,
-                "pull-push",
-                &modules,
-                "pull_push",
-                &own,
-            )
-            .for_all_lights(),
+            fill: Fill::new(device, shared),
+            colors,
+            splat,
+            pull_push,
         }
     }
 
-    /// The points of a batch, onto maps that hold nothing.
-    pub(crate) fn splat(
+    /// The samples of a light: their buffers, and the pass that colours them.
+    pub(crate) fn sample(
         &self,
-        scope: &LightScope<'_>,
-        batch: (&Blocks<BatchUniform>, u32),
-        samples: &wgpu::Buffer,
-        cloud: &wgpu::Buffer,
-        maps: &wgpu::Buffer,
-    ) -> Dispatch {
-        let (blocks, index) = batch;
-        let uniform = blocks.values[index as usize];
+        scope: &mut LightScope<'_>,
+        area: &AreaLight,
+        maps: &Maps,
+    ) -> (Buffers, Pass) {
+        let count = area.positions.len() as u32;
+        let buffers = Buffers {
+            batches: scope.blocks("batches", area.batches(maps)),
+            samples: scope.upload("samples", &area.samples(scope.rays.eye, maps)),
+            colors: scope.storage("colors of the samples", 16 * u64::from(count)),
+            maps: scope.storage("imperfect maps", maps.bytes()),
+        };
         let resources = [
-            blocks.binding(index),
-            samples.as_entire_binding(),
-            cloud.as_entire_binding(),
-            maps.as_entire_binding(),
+            buffers.batches.binding(0),
+            buffers.samples.as_entire_binding(),
+            buffers.colors.as_entire_binding(),
         ];
-        let groups = [
-            uniform.points.div_ceil(POINTS_A_WORKGROUP),
-            uniform.count,
-            1,
-        ];
-        scope.dispatch(&self.splat, &resources, groups)
+        let groups = [count.div_ceil(THREADS), 1, 1];
+        let pass = scope.compute(&self.colors, "sample light", &resources, groups);
+        (buffers, pass)
     }
 
-    /// Fills the holes of a batch's maps.
-    pub(crate) fn pull_push(
+    /// The maps of a batch: its points, and their holes filled.
+    pub(crate) fn draw(
         &self,
-        scope: &LightScope<'_>,
-        batch: (&Blocks<BatchUniform>, u32),
-        maps: &wgpu::Buffer,
-    ) -> Dispatch {
-        let (blocks, index) = batch;
-        let uniform = blocks.values[index as usize];
-        let resources = [blocks.binding(index), maps.as_entire_binding()];
-        let blocks = uniform.side.div_ceil(BLOCK);
-        scope.dispatch(&self.pull_push, &resources, [blocks, blocks, uniform.count])
+        scope: &mut LightScope<'_>,
+        buffers: &Buffers,
+        index: u32,
+        cloud: &wgpu::Buffer,
+    ) -> [Pass; 2] {
+        let batch = buffers.batches.values[index as usize];
+        let empty = self
+            .fill
+            .dispatch(scope, "no surface", &buffers.maps, NOTHING);
+        let resources = [
+            buffers.batches.binding(index),
+            buffers.samples.as_entire_binding(),
+            cloud.as_entire_binding(),
+            buffers.maps.as_entire_binding(),
+        ];
+        let groups = [batch.points.div_ceil(THREADS), batch.count, 1];
+        let splat = scope.dispatch(&self.splat, &resources, groups);
+        let resources = [
+            buffers.batches.binding(index),
+            buffers.maps.as_entire_binding(),
+        ];
+        let blocks = batch.side.div_ceil(BLOCK);
+        let groups = [blocks, blocks, batch.count];
+        [
+            Pass::compute(scope.pass_name("splat points"), vec![empty, splat]),
+            scope.compute(&self.pull_push, "pull-push", &resources, groups),
+        ]
     }
 }

@@ -44,6 +44,6 @@ fn imperfect_texel(side: u32, place: vec2f) -> u32 {
 // How many texels a point of this radius covers beyond the one it falls on.
 fn imperfect_reach(side: u32, radius: f32, distance: f32) -> i32 {
     // A texel's mean solid angle is 2 pi / side^2.
-    let texels = radius / max(distance, 1e-20) * f32(side) / sqrt(2.0 * PI);
+    let texels = 0.5 * radius / max(distance, 1e-20) * f32(side) / sqrt(2.0 * PI);
     return i32(min(texels, 3.0));
 }

@@ -28,7 +28,7 @@ pub(crate) fn splat(side: usize, points: impl Iterator<Item = (DVec3, f64)>) -> 
     let mut map: Vec<Option<f64>> = vec![None; side * side];
     for (local, radius) in points.filter(|(local, _)| local.z > 0.0) {
         let distance = local.length();
-        let texels = radius / distance * side as f64 / std::f64::consts::TAU.sqrt();
+        let texels = 0.5 * radius / distance * side as f64 / std::f64::consts::TAU.sqrt();
         let reach = texels.min(3.0) as i64;
         let middle = texel(side, place(local)) as i64;
         let side = side as i64;

@@ -5,7 +5,7 @@
 @group(2) @binding(2) var<storage, read> grids: array<Epipolar>;
 @group(2) @binding(3) var<storage, read> imperfect_maps: array<u32>;
 @group(2) @binding(4) var<storage, read> voxels: array<u32>;
-@group(2) @binding(5) var<storage, read> vpl_colors: array<vec4f>;
+@group(2) @binding(5) var<storage, read> imperfect_colors: array<vec4f>;
 @group(2) @binding(6) var<uniform> ivsv: IvsvParams;
 // Radiance, and of how many samples it is.
 @group(2) @binding(7) var<storage, read_write> ivsv_sums: array<vec4f>;
@@ -107,7 +107,7 @@ fn ivsv_sample(ray: Ray, span: vec2f, tile: u32) -> vec3f {
     let evenly = all * (1.0 - dark.x / max(dark.y, 1e-20));
     let seen = select(bright, evenly, ivsv.weighting == IVSV_UNIFORM);
     let reached = select(0.0, step / view.height, span.x < span.y && lit.x < lit.y);
-    return vpl_colors[imperfect_batch.first + tile].rgb * seen * reached;
+    return imperfect_colors[imperfect_batch.first + tile].rgb * seen * reached;
 }
 
 // Along the axis all light rays are one to either side of the sample: what lies between it and the ray's ends, as

@@ -13,26 +13,23 @@ use crate::{
         grid::{EpipolarGrid, GridScene},
     },
     error::PrepareError,
-    frame::{Emitter, Light},
     gpu::{
+        fill::Fill,
         layout,
         pass::{Pass, Work},
         program::{ComputeProgram, ScreenProgram},
-        scope::{Blocks, LightScope, Shared},
+        scope::{LightScope, Shared},
     },
-    shadow::imperfect::gpu::{
-        self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps, NOTHING,
-    },
-    voxels::gpu::{self as voxels, VOXELS},
+    shadow::imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
+    voxels::gpu::{self as voxels, Scan, VOXELS},
 };
 
-const VPL_COLORS: &str = include_str!("vpl_colors.wgsl");
 const RECTIFY: &str = include_str!("rectify.wgsl");
 const PARAMS: &str = include_str!("params.wgsl");
 const GATHER: &str = include_str!("gather.wgsl");
 const RESOLVE: &str = include_str!("resolve.wgsl");
 
-/// Light rays, and samples, that a workgroup takes.
+/// Light rays that a workgroup takes.
 const THREADS: u32 = 64;
 /// Pixels a side that a workgroup of `gather.wgsl` takes.
 const TILE: u32 = 8;
@@ -72,8 +69,8 @@ impl ParamsUniform {
 /// The technique's shaders.
 pub(crate) struct Programs {
     maps: imperfect::Programs,
-    voxels: voxels::Programs,
-    colors: ComputeProgram,
+    fill: Fill,
+    scan: Scan,
     rectify: ComputeProgram,
     gather: ComputeProgram,
     resolve: ScreenProgram,
@@ -86,8 +83,6 @@ impl Programs {
         let compute = |label, modules: &[&str], entry_point, own: &[_]| {
             ComputeProgram::new(device, shared, label, modules, entry_point, own)
         };
-        let own = [batch, read(1), layout::storage(2, false)];
-        let colors = compute("sample colors", &[IMPERFECT, VPL_COLORS], "vpl_color", &own);
         let own = [batch, read(1), read(2), read(3), layout::storage(4, false)];
         let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, RECTIFY];
         let rectify = compute("rectify", &modules, "rectify", &own);
@@ -107,8 +102,8 @@ impl Programs {
         let modules = [IMPERFECT, PARAMS, RESOLVE];
         Self {
             maps: imperfect::Programs::new(device, shared),
-            voxels: voxels::Programs::new(device, shared),
-            colors,
+            fill: Fill::new(device, shared),
+            scan: Scan::new(device, shared),
             rectify,
             gather,
             resolve: ScreenProgram::new(device, shared, "resolve", &modules, "ivsv_resolve", &own),
@@ -118,12 +113,9 @@ impl Programs {
 
 /// What all batches of a light share.
 struct Buffers {
-    batches: Blocks<BatchUniform>,
-    samples: wgpu::Buffer,
+    light: imperfect::Buffers,
     grids: wgpu::Buffer,
-    maps: wgpu::Buffer,
     voxels: wgpu::Buffer,
-    colors: wgpu::Buffer,
     params: wgpu::Buffer,
     sums: wgpu::Buffer,
 }
@@ -141,41 +133,35 @@ pub(crate) fn passes(
     let samples = area.positions.len() as u32;
     let maps = maps(params, samples, &scope.inputs, &scope.device.limits());
     let picture = ParamsUniform::new(params, scope.size);
+    let (light, sample) = programs.maps.sample(scope, &area, &maps);
+    let bytes = voxels::bytes(params.resolution) * u64::from(maps.batch);
     let buffers = Buffers {
-        batches: scope.blocks("batches", area.batches(&maps)),
-        samples: scope.upload("samples", &area.samples(scope.rays.eye, &maps)),
+        light,
         grids: scope.upload("grids of the samples", &grids(params, &area, scope)),
-        maps: scope.storage("imperfect maps", maps.bytes()),
-        voxels: scope.storage(
-            "voxels of the samples",
-            voxels::bytes(params.resolution) * u64::from(maps.batch),
-        ),
-        colors: scope.storage("colors of the samples", 16 * u64::from(samples)),
+        voxels: scope.storage("voxels of the samples", bytes),
         params: scope.uniform("ivsv params", &picture),
         sums: scope.storage("gathered light", 16 * picture.pixels()),
     };
-    let resources = [
-        buffers.batches.binding(0),
-        buffers.samples.as_entire_binding(),
-        buffers.colors.as_entire_binding(),
-    ];
-    let groups = [samples.div_ceil(THREADS), 1, 1];
-    let mut passes = vec![scope.compute(&programs.colors, "sample light", &resources, groups)];
-    for batch in 0..buffers.batches.values.len() as u32 {
+    let mut passes = vec![sample];
+    for batch in 0..buffers.light.batches.values.len() as u32 {
         if let Some(cloud) = scope.inputs.points {
-            passes.extend(draw(
+            passes.extend(
+                programs
+                    .maps
+                    .draw(scope, &buffers.light, batch, cloud.points),
+            );
+            passes.extend(voxelize(
                 programs,
                 scope,
                 &buffers,
                 batch,
-                cloud.points,
                 params.resolution,
             ));
         }
         passes.push(gather(programs, scope, &buffers, batch, &picture));
     }
     let resources = [
-        buffers.batches.binding(0),
+        buffers.light.batches.binding(0),
         buffers.params.as_entire_binding(),
         buffers.sums.as_entire_binding(),
     ];
@@ -184,39 +170,30 @@ pub(crate) fn passes(
     passes
 }
 
-/// The maps and the voxels of a batch.
-fn draw(
+/// The voxels of a batch.
+fn voxelize(
     programs: &Programs,
     scope: &mut LightScope<'_>,
     buffers: &Buffers,
     index: u32,
-    cloud: &wgpu::Buffer,
     side: u32,
-) -> [Pass; 4] {
-    let batch = (&buffers.batches, index);
-    let count = buffers.batches.values[index as usize].count;
-    let empty = programs
-        .voxels
-        .clear(scope, "no surface", &buffers.maps, NOTHING);
-    let splat = programs
-        .maps
-        .splat(scope, batch, &buffers.samples, cloud, &buffers.maps);
-    let fill = programs.maps.pull_push(scope, batch, &buffers.maps);
-    let clear = programs.voxels.clear(scope, "no voxel", &buffers.voxels, 0);
+) -> [Pass; 2] {
+    let count = buffers.light.batches.values[index as usize].count;
+    let clear = programs
+        .fill
+        .dispatch(scope, "no voxel", &buffers.voxels, 0);
     let resources = [
-        buffers.batches.binding(index),
-        buffers.samples.as_entire_binding(),
+        buffers.light.batches.binding(index),
+        buffers.light.samples.as_entire_binding(),
         buffers.grids.as_entire_binding(),
-        buffers.maps.as_entire_binding(),
+        buffers.light.maps.as_entire_binding(),
         buffers.voxels.as_entire_binding(),
     ];
     let groups = [side / THREADS, side, count];
     let rectify = scope.dispatch(&programs.rectify, &resources, groups);
     [
-        Pass::compute(scope.pass_name("splat points"), vec![empty, splat]),
-        Pass::compute(scope.pass_name("pull-push"), vec![fill]),
         Pass::compute(scope.pass_name("voxelize"), vec![clear, rectify]),
-        programs.voxels.scan(scope, side, &buffers.voxels, count),
+        programs.scan.pass(scope, side, &buffers.voxels, count),
     ]
 }
 
@@ -228,12 +205,12 @@ fn gather(
     picture: &ParamsUniform,
 ) -> Pass {
     let resources = [
-        buffers.batches.binding(index),
-        buffers.samples.as_entire_binding(),
+        buffers.light.batches.binding(index),
+        buffers.light.samples.as_entire_binding(),
         buffers.grids.as_entire_binding(),
-        buffers.maps.as_entire_binding(),
+        buffers.light.maps.as_entire_binding(),
         buffers.voxels.as_entire_binding(),
-        buffers.colors.as_entire_binding(),
+        buffers.light.colors.as_entire_binding(),
         buffers.params.as_entire_binding(),
         buffers.sums.as_entire_binding(),
     ];
@@ -273,23 +250,9 @@ fn grids(params: &Params, area: &AreaLight, scope: &LightScope<'_>) -> Vec<Epipo
 
 /// How the maps are made, and how many samples' maps and voxels the device binds at once.
 fn maps(params: &Params, samples: u32, inputs: &LightInputs<'_>, limits: &wgpu::Limits) -> Maps {
-    let cloud = inputs
-        .points
-        .map_or(0, |cloud| (cloud.points.size() / 16) as u32);
-    let side = inputs.points.map_or(0, |cloud| cloud.map_side);
-    let maps = Maps {
-        side,
-        points: params.points.min(cloud),
-        cloud,
-        batch: 1,
-    };
-    let most =
-        limits.max_storage_buffer_binding_size / maps.bytes().max(voxels::bytes(params.resolution));
-    let batch = if params.batched { samples } else { 1 };
-    Maps {
-        batch: u64::from(batch).min(most).max(1) as u32,
-        ..maps
-    }
+    let at_once = if params.batched { samples } else { 1 };
+    let bytes = voxels::bytes(params.resolution);
+    Maps::new(inputs, params.points, at_once, bytes, limits)
 }
 
 /// Passes, dispatches and samples of the light.
@@ -315,34 +278,12 @@ pub(crate) fn check(
     limits: &wgpu::Limits,
     size: [u32; 2],
     index: usize,
-    light: &Light,
     inputs: &LightInputs<'_>,
 ) -> Result<(), PrepareError> {
-    let Emitter::Rect { .. } = light.emitter else {
-        return Ok(());
-    };
-    let one = maps(params, 1, inputs, limits);
-    let limit = limits.max_storage_buffer_binding_size;
-    for (what, needed) in [
+    let pixels = ParamsUniform::new(params, size).pixels();
+    let others = [
         ("voxels of a sample", voxels::bytes(params.resolution)),
-        ("map of a sample", one.bytes()),
-        ("points", 16 * u64::from(one.cloud)),
-        (
-            "gathered light",
-            16 * ParamsUniform::new(params, size).pixels(),
-        ),
-    ] {
-        if needed > limit {
-            return Err(PrepareError::Limit {
-                what: format!(
-                    "{what} of technique `{}` (lights[{index}])",
-                    super::INFO.name
-                ),
-                needed,
-                limit,
-                name: "max_storage_buffer_binding_size",
-            });
-        }
-    }
-    Ok(())
+        ("gathered light", 16 * pixels),
+    ];
+    maps(params, 1, inputs, limits).check(super::INFO.name, index, limits, &others)
 }

@@ -9,6 +9,7 @@ use crate::{
     },
     error::PrepareError,
     gpu::{
+        fill::Fill,
         layout,
         pass::Pass,
         program::{ComputeProgram, ScreenProgram},
@@ -17,7 +18,7 @@ use crate::{
     },
     light::LightModel,
     shadow,
-    voxels::gpu::{self as voxels, RUNS, VOXELS},
+    voxels::gpu::{self as voxels, RUNS, Scan, VOXELS},
 };
 
 const LIGHT_RAY: &str = include_str!("light_ray.wgsl");
@@ -29,7 +30,8 @@ const RAYS_A_WORKGROUP: u32 = 64;
 
 /// The technique's shaders.
 pub(crate) struct Programs {
-    voxels: voxels::Programs,
+    fill: Fill,
+    scan: Scan,
     voxelize: ComputeProgram,
     gather: ScreenProgram,
 }
@@ -49,7 +51,8 @@ impl Programs {
         ];
         let modules = [AIRLIGHT, STRETCH, EPIPOLAR, VOXELS, RUNS, LIGHT_RAY, GATHER];
         Self {
-            voxels: voxels::Programs::new(device, shared),
+            fill: Fill::new(device, shared),
+            scan: Scan::new(device, shared),
             voxelize,
             gather: ScreenProgram::new(device, shared, "gather", &modules, "gather", &own),
         }
@@ -75,7 +78,7 @@ pub(crate) fn passes(
     let bits = scope.storage("voxels", bytes);
     let mut passes = Vec::new();
     if has_voxels {
-        let clear = programs.voxels.clear(scope, "no voxel", &bits, 0);
+        let clear = programs.fill.dispatch(scope, "no voxel", &bits, 0);
         let resources = [uniform.as_entire_binding(), bits.as_entire_binding()];
         let groups = [side / RAYS_A_WORKGROUP, side, 1];
         let voxelize = scope.dispatch(&programs.voxelize, &resources, groups);
@@ -83,7 +86,7 @@ pub(crate) fn passes(
             scope.pass_name("voxelize"),
             vec![clear, voxelize],
         ));
-        passes.push(programs.voxels.scan(scope, side, &bits, 1));
+        passes.push(programs.scan.pass(scope, side, &bits, 1));
     }
     let airlight = scope.airlight();
     let resources = [

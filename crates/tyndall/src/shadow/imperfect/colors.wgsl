@@ -2,13 +2,13 @@
 
 @group(2) @binding(0) var<uniform> imperfect_batch: ImperfectBatch;
 @group(2) @binding(1) var<storage, read> imperfect_samples: array<ImperfectSample>;
-@group(2) @binding(2) var<storage, read_write> vpl_colors: array<vec4f>;
+@group(2) @binding(2) var<storage, read_write> imperfect_colors: array<vec4f>;
 
 @compute @workgroup_size(64)
-fn vpl_color(@builtin(global_invocation_id) id: vec3u) {
+fn imperfect_color(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= imperfect_batch.total {
         return;
     }
     let tint = light_tint(imperfect_samples[id.x].position);
-    vpl_colors[id.x] = vec4f(light.color * tint * imperfect_batch.share, 0.0);
+    imperfect_colors[id.x] = vec4f(light.color * tint * imperfect_batch.share, 0.0);
 }
