@@ -125,6 +125,58 @@ pub fn evaluate_with<const N: usize>(
     Ok(gpu.read_buffer(&output)?)
 }
 
+/// Runs a compute shader once. `bound` are a bind group's index and its buffers, at bindings 0, 1 and so on.
+///
+/// # Errors
+/// Where the WGSL is not valid.
+pub fn dispatch(
+    gpu: &TestDevice,
+    modules: &[&str],
+    entry_point: &str,
+    constants: &[(&str, f64)],
+    (group, buffers): (u32, &[&wgpu::Buffer]),
+    [x, y, z]: [u32; 3],
+) -> Result<(), EvaluateError> {
+    Shader::new(modules)?;
+    let device = &gpu.device;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(entry_point),
+        source: wgpu::ShaderSource::Wgsl(modules.join("\n").into()),
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry_point),
+        layout: None,
+        module: &module,
+        entry_point: Some(entry_point),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants,
+            ..Default::default()
+        },
+        cache: None,
+    });
+    let entries: Vec<_> = (0..)
+        .zip(buffers)
+        .map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        })
+        .collect();
+    let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(entry_point),
+        layout: &pipeline.get_bind_group_layout(group),
+        entries: &entries,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(group, &bind_group, &[]);
+        pass.dispatch_workgroups(x, y, z);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    Ok(())
+}
+
 fn workgroups(inputs: usize) -> Result<u32, EvaluateError> {
     match u32::try_from(inputs.div_ceil(WORKGROUP_SIZE)) {
         Ok(count @ 1..=MAX_WORKGROUPS) => Ok(count),

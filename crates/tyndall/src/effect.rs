@@ -90,9 +90,21 @@ pub struct LightInputs<'a> {
     /// All that may block this light, as triangles, for techniques that bound shadows by geometry (`hybrid`); `None`: not
     /// known.
     pub occluders: Option<&'a [Occluder<'a>]>,
+    /// The surfaces that block a rectangular light; `None`: nothing does.
+    pub points: Option<PointCloud<'a>>,
     /// A number that changes whenever the shadow map's content does: what a technique made of the map alone for the
     /// frame before, if that was recorded and submitted, is used again. `None`: the map may change from frame to frame.
     pub shadow_revision: Option<u64>,
+}
+
+/// Surfaces as points, of which maps are made for the samples of a rectangular light.
+#[derive(Clone, Copy)]
+pub struct PointCloud<'a> {
+    /// A storage buffer of four floats a point: world-space position and the radius of the disc it stands for [m]. Any
+    /// points that follow each other have to be a fair sample of the surfaces: each map takes its own.
+    pub points: &'a wgpu::Buffer,
+    /// Texels a side of a sample's map (16 to 1024).
+    pub map_side: u32,
 }
 
 /// A number that says what a frame took, beside its time.

@@ -104,11 +104,12 @@ pub mod techniques;
 #[cfg(feature = "gpu")]
 pub mod temporal;
 mod validate;
+mod voxels;
 
 #[cfg(feature = "gpu")]
 pub use effect::{
     Count, CountValue, CreateError, Effect, EffectOptions, EffectView, FrameInputs, LightInputs,
-    OutputPrecision,
+    OutputPrecision, PointCloud,
 };
 pub use error::PrepareError;
 #[cfg(feature = "gpu")]

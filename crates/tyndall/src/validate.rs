@@ -475,8 +475,40 @@ pub(crate) fn gpu_inputs(
         if let Some(texture) = inputs.texture {
             bindable(&field("texture"), texture.texture())?;
         }
+        if let Some(points) = inputs.points {
+            point_cloud(&field("points"), light, &points)?;
+        }
     }
     Ok(())
+}
+
+#[cfg(feature = "gpu")]
+fn point_cloud(field: &str, light: &Light, cloud: &crate::effect::PointCloud<'_>) -> Checked {
+    require(
+        matches!(light.emitter, Emitter::Rect { .. }),
+        field,
+        "none, for the light is no rectangle",
+        "one",
+    )?;
+    require(
+        (16..=1024).contains(&cloud.map_side),
+        format!("{field}.map_side"),
+        "a whole number from 16 to 1024",
+        cloud.map_side,
+    )?;
+    let bytes = cloud.points.size();
+    require(
+        bytes > 0 && bytes.is_multiple_of(16),
+        format!("{field}.points"),
+        "a buffer of 16 bytes a point, of one point at least",
+        bytes,
+    )?;
+    require(
+        cloud.points.usage().contains(wgpu::BufferUsages::STORAGE),
+        format!("{field}.points"),
+        "a buffer with usage STORAGE",
+        cloud.points.usage(),
+    )
 }
 
 #[cfg(feature = "gpu")]

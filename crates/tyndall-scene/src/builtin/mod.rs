@@ -1,11 +1,12 @@
 //! Scenes made by code: nothing to download, the same triangles everywhere.
 //!
-//! Each has a camera and a sun among its nodes, placed so that shafts of light are plain to see.
+//! Each has a camera and a light among its nodes, placed so that shafts of light are plain to see.
 
 mod builder;
 mod church;
 mod forest;
 mod glass;
+mod hairball;
 mod noise;
 mod slats;
 mod terrain;
@@ -57,6 +58,11 @@ pub const BUILTINS: &[Builtin] = &[
         name: "slats",
         about: "a room behind a window blind: many thin shafts",
         make: slats::make,
+    },
+    Builtin {
+        name: "hairball",
+        about: "a ball of thousands of thin tubes under a light panel: soft shadows",
+        make: hairball::make,
     },
     Builtin {
         name: "empty",

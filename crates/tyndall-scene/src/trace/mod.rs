@@ -9,10 +9,12 @@
 //! | `texels` | how a textured surface's tint changes along a line |
 //! | `g_buffer` | what the camera sees |
 //! | `light_maps` | what a light sees: shadow maps and glass maps |
+//! | `points` | the surfaces that block light as points |
 
 mod bvh;
 mod g_buffer;
 mod light_maps;
+mod points;
 mod surface;
 mod sweep;
 #[cfg(test)]

@@ -19,6 +19,7 @@ struct Epipolar {
     tint_step: f32,
     tint_columns: u32, // 64 times a power of two
     turns: u32, // 1 where the slices are a whole turn
+    position: vec3f, // of a local light [m]
 }
 
 // A view ray in its slice: gamma of its point at distance s is c.x + s c.y (sun), or the angle of
@@ -59,7 +60,7 @@ fn epipolar_ray(e: Epipolar, ray: Ray) -> EpipolarRay {
         );
     }
     if light_is_local() {
-        let offset = ray.origin - light.position;
+        let offset = ray.origin - e.position;
         let x = vec2f(dot(offset, e.across_x), dot(offset, e.across_y));
         let height = length(x);
         return EpipolarRay(
@@ -98,6 +99,22 @@ fn epipolar_slice(e: Epipolar, r: EpipolarRay) -> u32 {
     return min(u32(r.place), e.slices - 1u);
 }
 
+// Two slices and their shares.
+struct EpipolarNeighbours {
+    index: vec2u,
+    weight: vec2f,
+}
+
+// The slices on either side of a place, where slice i stands for the place i.
+fn epipolar_neighbours(e: Epipolar, place: f32) -> EpipolarNeighbours {
+    let last = i32(e.slices) - 1;
+    let first = i32(floor(place));
+    let share = place - floor(place);
+    let open = clamp(vec2i(first, first + 1), vec2i(0), vec2i(last));
+    let closed = vec2i(select(first, last, first < 0), select(first + 1, 0, first >= last));
+    return EpipolarNeighbours(vec2u(select(open, closed, e.turns == 1u)), vec2f(1.0 - share, share));
+}
+
 // gamma of the view ray's point at distance s.
 fn epipolar_gamma(r: EpipolarRay, s: f32) -> f32 {
     let across = r.c.x + s * r.c.y;
@@ -127,7 +144,7 @@ struct EpipolarLightRay {
 // The light ray gamma of slice alpha, whose outward direction is epipolar_outward.
 fn epipolar_light_ray(e: Epipolar, alpha: f32, outward: vec3f, gamma: f32) -> EpipolarLightRay {
     if light_is_local() {
-        return EpipolarLightRay(light.position, sin(gamma) * outward - cos(gamma) * e.axis);
+        return EpipolarLightRay(e.position, sin(gamma) * outward - cos(gamma) * e.axis);
     }
     if epipolar_is_orthographic() {
         return EpipolarLightRay(gamma * e.across_x + alpha * e.across_y, light.direction);
@@ -151,6 +168,14 @@ fn epipolar_shadow_range(e: Epipolar, gamma: vec2f, ends: vec2f) -> vec2f {
         s = vec2f(min(low.x, low.y), epipolar_local(e, clamp(hump, gamma.x, gamma.y), ends.y));
     }
     return (s - e.b_start) * e.b_scale;
+}
+
+// S, as stored, of the light ray gamma that ends `end` [m] from its point.
+fn epipolar_shadow(e: Epipolar, gamma: f32, end: f32) -> f32 {
+    if light_is_local() {
+        return (epipolar_local(e, gamma, end) - e.b_start) * e.b_scale;
+    }
+    return (epipolar_sun(e, gamma, end) - e.b_start) * e.b_scale;
 }
 
 fn epipolar_sun(e: Epipolar, gamma: f32, end: f32) -> f32 {

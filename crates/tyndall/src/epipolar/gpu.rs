@@ -27,6 +27,8 @@ pub(crate) struct EpipolarUniform {
     pub(crate) tint_step: f32,
     pub(crate) tint_columns: u32,
     pub(crate) turns: u32,
+    pub(crate) position: [f32; 3],
+    pub(crate) pad: u32,
 }
 
 impl EpipolarUniform {
@@ -50,5 +52,7 @@ impl EpipolarUniform {
         tint_step: 1.0,
         tint_columns: 64,
         turns: 0,
+        position: [0.0; 3],
+        pad: 0,
     };
 }

@@ -52,6 +52,7 @@ pub(crate) struct EpipolarGrid {
     local: Option<f64>,
     /// Where view rays are measured from: the eye; orthographic and local: the light.
     origin: DVec3,
+    eye: DVec3,
     /// A local light's position; unused for the sun.
     light: DVec3,
     axis: DVec3,
@@ -157,6 +158,7 @@ impl EpipolarGrid {
             } else {
                 camera.eye
             },
+            eye: camera.eye,
             light,
             axis,
             across,
@@ -191,6 +193,38 @@ impl EpipolarGrid {
         (end > start && high > low).then_some(grid)
     }
 
+    /// The same with b in rows of view rays, from 0 to `rows` over what the picture sees.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn in_rows(mut self, scene: &GridScene<'_>, rows: u32) -> Self {
+        let [low, high] = self.b_seen(scene);
+        // The picture's corners and borders lie a row within.
+        let step = (high - low).max(1e-6) / f64::from(rows - 2);
+        (self.b_start, self.b_scale) = (low - step, 1.0 / step);
+        self
+    }
+
+    /// The range of b of the picture's view rays.
+    #[cfg(feature = "gpu")]
+    fn b_seen(&self, scene: &GridScene<'_>) -> [f64; 2] {
+        if self.orthographic {
+            return self.b_range(scene);
+        }
+        let b = |(x, y)| {
+            let direction = scene.camera.ray_to_far(x, y).direction;
+            let across = self.across.map(|u| u.dot(direction));
+            angle_scale(across[0].hypot(across[1]), direction.dot(self.axis))
+        };
+        let on_grid = picture_grid(scene.size).map(b);
+        let [low, high] = on_grid.fold([f64::INFINITY, f64::NEG_INFINITY], |r, b| {
+            [r[0].min(b), r[1].max(b)]
+        });
+        let sees = |end| scene.camera.sees(end, 1.0);
+        [
+            if sees(self.axis) { 0.0 } else { low },
+            if sees(-self.axis) { 2.0 } else { high },
+        ]
+    }
+
     /// As shaders see it, with so many columns of tints a slice.
     #[cfg(feature = "gpu")]
     pub(crate) fn uniform(&self, tint_columns: usize) -> super::gpu::EpipolarUniform {
@@ -215,6 +249,8 @@ impl EpipolarGrid {
             tint_step: ((self.tint_range[1] - self.tint_range[0]) / tint_columns as f64) as f32,
             tint_columns: tint_columns as u32,
             turns: u32::from(self.slices.is_whole_turn()),
+            position: floats(self.light - self.eye),
+            pad: 0,
         }
     }
 

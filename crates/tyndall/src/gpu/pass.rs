@@ -77,6 +77,16 @@ pub(crate) enum Vertices {
 }
 
 impl Pass {
+    /// Dispatches or draws in it.
+    pub(crate) fn parts(&self) -> usize {
+        match &self.work {
+            Work::Compute(dispatches) => dispatches.len(),
+            Work::FullScreen(draws) => draws.len(),
+            Work::Draw { draws, .. } => draws.len(),
+            Work::Stencil { .. } => 1,
+        }
+    }
+
     /// A pass of dispatches.
     pub(crate) fn compute(name: String, dispatches: Vec<Dispatch>) -> Self {
         Self {

@@ -1,7 +1,5 @@
 //! What a technique sees when it prepares a light: the frame, the light's inputs, and where to keep things.
 
-use std::num::NonZeroU64;
-
 use super::{
     airlight::AirlightPictures,
     layout::{self, Absent},
@@ -46,26 +44,6 @@ impl Shared {
     }
 }
 
-/// Offsets of uniform buffers are multiples of this, by WebGPU's default limits [bytes].
-const BLOCK_STRIDE: usize = 256;
-
-/// Uniform blocks of one buffer.
-pub(crate) struct Blocks {
-    buffer: wgpu::Buffer,
-    size: Option<NonZeroU64>,
-}
-
-impl Blocks {
-    /// The block of this index.
-    pub(crate) fn binding(&self, index: usize) -> wgpu::BindingResource<'_> {
-        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &self.buffer,
-            offset: (index * BLOCK_STRIDE) as u64,
-            size: self.size,
-        })
-    }
-}
-
 /// One light of a frame that is being prepared.
 pub(crate) struct LightScope<'a> {
     pub(crate) device: &'a wgpu::Device,
@@ -95,6 +73,24 @@ pub(crate) struct LightScope<'a> {
     pub(crate) counts: &'a mut Vec<Count>,
 }
 
+/// Uniform blocks in one buffer.
+pub(crate) struct Blocks<T> {
+    pub(crate) values: Vec<T>,
+    buffer: wgpu::Buffer,
+    pitch: u64,
+}
+
+impl<T> Blocks<T> {
+    /// One of them.
+    pub(crate) fn binding(&self, index: u32) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.buffer,
+            offset: u64::from(index) * self.pitch,
+            size: std::num::NonZeroU64::new(size_of::<T>() as u64),
+        })
+    }
+}
+
 impl LightScope<'_> {
     /// The airlight tables of the frame's medium, one layer a component.
     pub(crate) fn airlight(&self) -> wgpu::TextureView {
@@ -112,11 +108,17 @@ impl LightScope<'_> {
             .uniform(self.device, self.queue, (Some(self.index), name), value)
     }
 
-    /// Uniform blocks of this light that stand in one buffer; at least one.
-    pub(crate) fn blocks<T: bytemuck::Pod>(&mut self, name: &'static str, values: &[T]) -> Blocks {
-        let mut bytes = vec![0; (values.len().max(1)) * BLOCK_STRIDE];
-        for (value, slot) in values.iter().zip(bytes.chunks_mut(BLOCK_STRIDE)) {
-            slot[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(value));
+    /// Blocks of one kind in a uniform buffer of this light, for dispatches that take one each; room for at least one.
+    pub(crate) fn blocks<T: bytemuck::Pod>(
+        &mut self,
+        name: &'static str,
+        values: Vec<T>,
+    ) -> Blocks<T> {
+        let alignment = u64::from(self.device.limits().min_uniform_buffer_offset_alignment);
+        let pitch = (size_of::<T>() as u64).next_multiple_of(alignment);
+        let mut bytes = vec![0; values.len().max(1) * pitch as usize];
+        for (block, value) in bytes.chunks_exact_mut(pitch as usize).zip(&values) {
+            block[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(value));
         }
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let key = (Some(self.index), name);
@@ -125,8 +127,9 @@ impl LightScope<'_> {
             .buffer(self.device, key, bytes.len() as u64, usage);
         self.queue.write_buffer(&buffer, 0, &bytes);
         Blocks {
+            values,
             buffer,
-            size: NonZeroU64::new(size_of::<T>() as u64),
+            pitch,
         }
     }
 

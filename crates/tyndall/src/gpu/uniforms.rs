@@ -166,7 +166,7 @@ impl MediumUniform {
 }
 
 impl LightUniform {
-    /// A light as the shaders see it, and the variant of pipeline it needs. Rectangles have none.
+    /// A light as the shaders see it, and the variant of pipeline it needs.
     pub(crate) fn new(
         light: &frame::Light,
         eye: DVec3,
@@ -231,7 +231,19 @@ impl LightUniform {
                 self.cos_inner = inner.cos();
                 self.cos_outer = outer.cos();
             }
-            Emitter::Rect { .. } => {}
+            Emitter::Rect {
+                center,
+                edge_x,
+                edge_y,
+                radiance,
+                ..
+            } => {
+                variant.kind = 3;
+                self.color = radiance;
+                self.position = floats(reals(center) - eye);
+                let normal = reals(edge_x).cross(reals(edge_y));
+                self.direction = floats(normal.normalize_or_zero());
+            }
         }
     }
 
@@ -288,7 +300,7 @@ mod tests {
             AIRLIGHT,
             STRETCH,
             MARCH,
-            ray_march::gpu::RAY_MARCH,
+            ray_march::gpu::PARAMS,
             hybrid::gpu::HYBRID,
             light_volume::gpu::CUBE,
             light_volume::gpu::MESH,

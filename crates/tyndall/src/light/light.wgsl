@@ -3,6 +3,7 @@
 const LIGHT_DIRECTIONAL: u32 = 0u;
 const LIGHT_POINT: u32 = 1u;
 const LIGHT_SPOT: u32 = 2u;
+const LIGHT_RECT: u32 = 3u;
 
 const LIGHT_TEXTURE_NONE: u32 = 0u;
 const LIGHT_TEXTURE_AFFINE: u32 = 1u;
@@ -17,11 +18,11 @@ override LIGHT_TEXTURE: u32 = 0u;
 const LIGHT_RADIUS: f32 = 1e-3;
 
 struct Light {
-    color: vec3f, // illuminance [W/m^2] or intensity [W/sr]
+    color: vec3f, // illuminance [W/m^2], intensity [W/sr] or, of a rectangle, radiance [W/(m^2 sr)]
     cos_inner: f32,
-    position: vec3f, // [m]
+    position: vec3f, // of a rectangle its middle [m]
     cos_outer: f32,
-    direction: vec3f, // the way it travels, or the spot's axis; unit
+    direction: vec3f, // the way it travels, the spot's axis, or the rectangle's normal; unit
     glass_layers: u32,
     texture_rows: array<vec4f, 3>, // products with (point, 1), see LIGHT_TEXTURE
     clip_from_world: mat4x4f, // of a single shadow map; depth 1 at its near plane
@@ -102,9 +103,26 @@ fn light_incident(point: vec3f) -> Incident {
     return Incident(direction, color * transmittance(frame.medium.sigma_t, distance) * (falloff / distance2));
 }
 
+// The part of the ray q0 + s v on the side of a plane through the origin that its normal points to, within a span.
+fn light_before_plane(q0: vec3f, v: vec3f, normal: vec3f, span: vec2f) -> vec2f {
+    let height = dot(q0, normal);
+    let slope = dot(v, normal);
+    let crossing = -height / select(slope, 1e-30, slope == 0.0);
+    if slope > 0.0 {
+        return vec2f(max(span.x, crossing), span.y);
+    }
+    if slope < 0.0 {
+        return vec2f(span.x, min(span.y, crossing));
+    }
+    return select(span.xx, span, height > 0.0);
+}
+
 // The part of the ray, as distances [m], that the light can reach at all; empty where x >= y.
 fn light_reach(ray: Ray) -> vec2f {
     let all = vec2f(0.0, ray.length);
+    if LIGHT_KIND == LIGHT_RECT {
+        return light_before_plane(ray.origin - light.position, ray.direction, light.direction, all);
+    }
     if LIGHT_KIND != LIGHT_SPOT {
         return all;
     }

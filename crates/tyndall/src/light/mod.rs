@@ -1,6 +1,8 @@
 //! Lights: how much of one reaches a point, and from where, if nothing blocks it.
 
 pub mod cone;
+#[cfg(feature = "gpu")]
+pub(crate) mod halton;
 pub mod texture;
 
 use glam::DVec3;
@@ -159,6 +161,11 @@ impl<'a> LightModel<'a> {
             } => Some((axis, cos_outer.acos())),
             _ => None,
         }
+    }
+
+    /// True of a sample of a rectangle.
+    pub(crate) fn is_of_area(&self) -> bool {
+        matches!(self.shape, Shape::Patch { .. })
     }
 
     /// True where the light is the same along a view ray but for distance and angle:

@@ -6,6 +6,8 @@
 
 pub(crate) mod depths;
 #[cfg(feature = "gpu")]
+pub(crate) mod imperfect;
+#[cfg(feature = "gpu")]
 pub(crate) mod pyramid;
 pub mod walk;
 

@@ -2,12 +2,14 @@
 
 pub mod epipolar_sampling;
 pub mod hybrid;
+pub mod imperfect_voxelized;
 pub mod incremental;
 pub mod light_volume;
 pub mod min_max;
 mod params;
 pub mod ray_march;
 pub mod reference;
+pub mod voxelized;
 
 use crate::{cpu::CpuScene, error::PrepareError, frame::Frame};
 use params::Parameters;
@@ -16,7 +18,7 @@ use {
     crate::{
         effect::LightInputs,
         frame::Light,
-        gpu::{pass::Pass, program::ScreenProgram, scope::LightScope},
+        gpu::{pass::Pass, scope::LightScope},
         temporal::Reach,
     },
     std::sync::OnceLock,
@@ -41,6 +43,10 @@ pub enum Technique {
     Epipolar(epipolar_sampling::Params),
     /// Shadow volumes and steps.
     Hybrid(hybrid::Params),
+    /// Voxelized shadow volumes.
+    Voxelized(voxelized::Params),
+    /// Imperfect voxelized shadow volumes.
+    ImperfectVoxelized(imperfect_voxelized::Params),
 }
 
 /// Which backends a technique runs on.
@@ -102,6 +108,8 @@ pub const TABLE: &[TechniqueInfo] = &[
     epipolar_sampling::INFO,
     light_volume::INFO,
     hybrid::INFO,
+    voxelized::INFO,
+    imperfect_voxelized::INFO,
     incremental::INFO,
     reference::INFO,
 ];
@@ -137,6 +145,8 @@ impl Technique {
             Self::LightVolume(_) => &light_volume::INFO,
             Self::Epipolar(_) => &epipolar_sampling::INFO,
             Self::Hybrid(_) => &hybrid::INFO,
+            Self::Voxelized(_) => &voxelized::INFO,
+            Self::ImperfectVoxelized(_) => &imperfect_voxelized::INFO,
         }
     }
 
@@ -150,6 +160,8 @@ impl Technique {
             Self::LightVolume(p) => p.list(),
             Self::Epipolar(p) => p.list(),
             Self::Hybrid(p) => p.list(),
+            Self::Voxelized(p) => p.list(),
+            Self::ImperfectVoxelized(p) => p.list(),
         }
     }
 
@@ -166,6 +178,8 @@ impl Technique {
             Self::LightVolume(p) => p.set(key, value),
             Self::Epipolar(p) => p.set(key, value),
             Self::Hybrid(p) => p.set(key, value),
+            Self::Voxelized(p) => p.set(key, value),
+            Self::ImperfectVoxelized(p) => p.set(key, value),
         }
     }
 
@@ -184,16 +198,18 @@ impl Technique {
     ) -> Result<Box<dyn crate::cpu::RayIntegrator + 'a>, PrepareError> {
         match self {
             Self::Reference(p) => reference::cpu::integrator(p, scene),
-            Self::RayMarch(p) => Ok(ray_march::cpu::integrator(p, scene)),
+            Self::RayMarch(p) => ray_march::cpu::integrator(p, scene),
             Self::MinMax(p) => Ok(min_max::cpu::integrator(p, scene)),
             Self::Incremental(p) => incremental::cpu::integrator(p, scene),
             // The table says they are the GPU's.
-            Self::LightVolume(_) | Self::Epipolar(_) | Self::Hybrid(_) => {
-                Err(PrepareError::Unsupported {
-                    technique: self.info().name,
-                    what: "its work on the CPU".into(),
-                })
-            }
+            Self::LightVolume(_)
+            | Self::Epipolar(_)
+            | Self::Hybrid(_)
+            | Self::Voxelized(_)
+            | Self::ImperfectVoxelized(_) => Err(PrepareError::Unsupported {
+                technique: self.info().name,
+                what: "its work on the CPU".into(),
+            }),
         }
     }
 }
@@ -202,11 +218,13 @@ impl Technique {
 #[cfg(feature = "gpu")]
 #[derive(Default)]
 pub(crate) struct Programs {
-    ray_march: OnceLock<ScreenProgram>,
+    ray_march: OnceLock<ray_march::gpu::Programs>,
     min_max: OnceLock<min_max::gpu::Programs>,
     light_volume: OnceLock<light_volume::gpu::Programs>,
     epipolar: OnceLock<epipolar_sampling::gpu::Programs>,
     hybrid: OnceLock<hybrid::gpu::Programs>,
+    voxelized: OnceLock<voxelized::gpu::Programs>,
+    imperfect_voxelized: OnceLock<imperfect_voxelized::gpu::Programs>,
 }
 
 #[cfg(feature = "gpu")]
@@ -224,6 +242,11 @@ impl Technique {
             Self::LightVolume(p) => light_volume::gpu::check(p, limits, index, light, inputs),
             Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
             Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
+            Self::RayMarch(p) => ray_march::gpu::check(p, limits, size, index, light, inputs),
+            Self::Voxelized(p) => voxelized::gpu::check(p, limits, index),
+            Self::ImperfectVoxelized(p) => {
+                imperfect_voxelized::gpu::check(p, limits, size, index, inputs)
+            }
             _ => Ok(()),
         }
     }
@@ -242,9 +265,8 @@ impl Technique {
         let (device, shared) = (scope.device, scope.shared);
         match self {
             Self::RayMarch(p) => {
-                let program = &programs.ray_march;
-                let program = program.get_or_init(|| ray_march::gpu::program(device, shared));
-                ray_march::gpu::passes(p, program, scope)
+                let make = || ray_march::gpu::Programs::new(device, shared);
+                ray_march::gpu::passes(p, programs.ray_march.get_or_init(make), scope)
             }
             Self::MinMax(p) => {
                 let programs = &programs.min_max;
@@ -264,6 +286,15 @@ impl Technique {
             Self::Hybrid(p) => {
                 let make = || hybrid::gpu::Programs::new(device, shared);
                 hybrid::gpu::passes(p, programs.hybrid.get_or_init(make), scope)
+            }
+            Self::Voxelized(p) => {
+                let make = || voxelized::gpu::Programs::new(device, shared);
+                voxelized::gpu::passes(p, programs.voxelized.get_or_init(make), scope)
+            }
+            Self::ImperfectVoxelized(p) => {
+                let make = || imperfect_voxelized::gpu::Programs::new(device, shared);
+                let programs = programs.imperfect_voxelized.get_or_init(make);
+                imperfect_voxelized::gpu::passes(p, programs, scope)
             }
             // Refused by the table: they have no GPU side.
             Self::Reference(_) | Self::Incremental(_) => Vec::new(),

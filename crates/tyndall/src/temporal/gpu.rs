@@ -344,7 +344,7 @@ fn touch(moved: &[Placed], programs: &Programs, scope: &mut LightScope<'_>) -> P
 /// The dispatches that leave the pixels' ages.
 fn find(buffers: &Buffers, programs: &Programs, scope: &mut LightScope<'_>) -> Pass {
     let levels: Vec<[u32; 4]> = (0..MAX_DISPATCHES as u32).map(|k| [k, 0, 0, 0]).collect();
-    let levels = scope.blocks("reuse levels", &levels);
+    let levels = scope.blocks("reuse levels", levels);
     let [params, state, blocks] =
         [&buffers.params, &buffers.state, &buffers.blocks].map(|b| b.as_entire_binding());
     let count = scope.inputs.shadow_map.map_or(0, |map| {
@@ -364,7 +364,7 @@ fn find(buffers: &Buffers, programs: &Programs, scope: &mut LightScope<'_>) -> P
             params.clone(),
             blocks.clone(),
             buffers.map_seen.as_entire_binding(),
-            levels.binding(level),
+            levels.binding(level as u32),
         ];
         let program = if level == 0 {
             &programs.change_finest

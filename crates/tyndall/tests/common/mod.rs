@@ -103,7 +103,7 @@ pub(crate) fn picture(pixels: &[[f32; 4]]) -> Picture {
     Picture::new(SIZE.map(|n| n as usize), colors.collect()).expect("as many as the size")
 }
 
-fn media() -> [(&'static str, Medium); 4] {
+pub(crate) fn media() -> [(&'static str, Medium); 4] {
     let one = |sigma_s, sigma_a, phase| MediumComponent {
         sigma_s,
         sigma_a,
@@ -142,7 +142,7 @@ fn media() -> [(&'static str, Medium); 4] {
 }
 
 /// Cameras in a world of some ten metres about the origin; `TARGET` is where the local lights are.
-fn cameras() -> [(&'static str, Camera); 6] {
+pub(crate) fn cameras() -> [(&'static str, Camera); 6] {
     let aspect = SIZE[0] as f32 / SIZE[1] as f32;
     let at =
         |eye, target| Camera::perspective(eye, target, [0.0, 1.0, 0.0], 1.0, aspect, 0.1, 30.0);
@@ -304,7 +304,7 @@ fn glass_map(faces: u32, reversed: bool, perspective: bool) -> GlassMap {
     }
 }
 
-fn light_texture() -> LightTexture {
+pub(crate) fn light_texture() -> LightTexture {
     let size = [13, 9];
     let texel = |i| std::array::from_fn(|k| noise(3 * i + k as u32));
     LightTexture {

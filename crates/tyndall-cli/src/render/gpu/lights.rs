@@ -1,8 +1,13 @@
 //! What belongs to each light on the GPU.
 
-use tyndall::{LightInputs, Occluder, frame::Light};
-use tyndall_scene::gpu::{GlassMapTarget, SceneRenderer, ShadowMapTarget, upload_light_texture};
-use wgpu::TextureView;
+use tyndall::{
+    LightInputs, Occluder, PointCloud,
+    frame::{Emitter, Light},
+};
+use tyndall_scene::gpu::{
+    GlassMapTarget, SceneRenderer, ShadowMapTarget, upload_light_texture, upload_point_cloud,
+};
+use wgpu::{Buffer, TextureView};
 
 use crate::{
     failure::Failure,
@@ -10,11 +15,16 @@ use crate::{
     setup::Setup,
 };
 
+/// Points of the scene's surfaces that maps of a rectangular light are made of.
+const CLOUD: u32 = 1 << 19;
+
 /// What belongs to one light.
 pub(super) struct LightTargets {
     pub(super) shadow_map: Option<ShadowMapTarget>,
     pub(super) glass: Option<GlassMapTarget>,
     texture: Option<TextureView>,
+    /// Of a rectangular light: the scene's surfaces, and the texels a side of a sample's map.
+    points: Option<(Buffer, u32)>,
 }
 
 impl LightTargets {
@@ -44,7 +54,13 @@ impl LightTargets {
             .map(|texture| upload_light_texture(device, queue, texture))
             .transpose()
             .map_err(Failure::device)?;
+        let is_area = matches!(light.emitter, Emitter::Rect { .. });
+        let points = (is_area && needs.light_maps)
+            .then(|| setup.tracer.point_cloud(CLOUD))
+            .filter(|cloud| !cloud.is_empty())
+            .map(|cloud| (upload_point_cloud(device, &cloud), extra.map_size[0]));
         Ok(Self {
+            points,
             shadow_map,
             glass,
             texture: texture.map(|texture| texture.create_view(&Default::default())),
@@ -59,6 +75,7 @@ impl LightTargets {
     pub(super) fn bytes(&self) -> u64 {
         self.shadow_map.as_ref().map_or(0, ShadowMapTarget::bytes)
             + self.glass.as_ref().map_or(0, GlassMapTarget::bytes)
+            + self.points.as_ref().map_or(0, |(buffer, _)| buffer.size())
     }
 }
 
@@ -74,6 +91,10 @@ pub(super) fn light_inputs<'a>(
             glass: light.glass.as_ref().map(GlassMapTarget::view),
             texture: light.texture.as_ref(),
             occluders,
+            points: light.points.as_ref().map(|(points, map_side)| PointCloud {
+                points,
+                map_side: *map_side,
+            }),
             ..LightInputs::default()
         })
         .collect()

@@ -226,10 +226,12 @@ fn eye_pass(
             }
         })
         .collect();
-    let blocks = scope.blocks("hybrid eye params", &uniforms);
+    let blocks = scope.blocks("hybrid eye params", uniforms);
     let dispatches = (0..).zip(occluders).map(|(i, occluder)| {
-        let groups = uniforms[i].triangles.div_ceil(EYE_GROUP);
-        let rows = groups.div_ceil(uniforms[i].columns);
+        let EyeUniform {
+            triangles, columns, ..
+        } = blocks.values[i as usize];
+        let rows = triangles.div_ceil(EYE_GROUP).div_ceil(columns);
         let resources = [
             places.as_entire_binding(),
             occluder.mesh.corners.as_entire_binding(),
@@ -238,7 +240,6 @@ fn eye_pass(
             blocks.binding(i),
         ];
         let clear = (i == 0).then(|| scope.dispatch(&programs.eye_clear, &resources, [1; 3]));
-        let columns = uniforms[i].columns;
         let test = scope.dispatch(&programs.eye, &resources, [columns, rows, 1]);
         clear.into_iter().chain([test])
     });

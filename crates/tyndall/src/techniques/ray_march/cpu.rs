@@ -6,6 +6,7 @@ use super::{Params, Spacing};
 use crate::{
     camera::Ray,
     cpu::{CpuLight, CpuScene, RayIntegrator},
+    error::PrepareError,
     light::{LIGHT_RADIUS, LightModel},
     physics::medium::Optics,
 };
@@ -13,8 +14,15 @@ use crate::{
 pub(crate) fn integrator<'a>(
     params: &'a Params,
     scene: &'a CpuScene<'a>,
-) -> Box<dyn RayIntegrator + 'a> {
-    Box::new(RayMarch { params, scene })
+) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
+    let is_area = |light: &CpuLight<'_>| light.models.iter().any(LightModel::is_of_area);
+    if let Some(index) = scene.lights.iter().position(is_area) {
+        return Err(PrepareError::Unsupported {
+            technique: super::INFO.name,
+            what: format!("rect lights on the CPU (lights[{index}])"),
+        });
+    }
+    Ok(Box::new(RayMarch { params, scene }))
 }
 
 struct RayMarch<'a> {

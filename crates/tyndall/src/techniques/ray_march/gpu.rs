@@ -1,20 +1,33 @@
-//! The GPU side: one full-screen pass a light, `ray_march.wgsl`.
+//! The GPU side: one full-screen pass a light, `ray_march.wgsl`; of a rectangular light maps of its samples, a pass that
+//! marches all of a batch, and one that writes the output.
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Params, Spacing};
-use crate::gpu::{
-    layout,
-    pass::Pass,
-    program::ScreenProgram,
-    scope::{LightScope, Shared},
-    shader::MARCH,
+use super::{INFO, Params, Spacing};
+use crate::{
+    effect::LightInputs,
+    error::PrepareError,
+    frame::{Emitter, Light},
+    gpu::{
+        layout,
+        pass::Pass,
+        program::{ComputeProgram, ScreenProgram},
+        scope::{LightScope, Shared},
+        shader::MARCH,
+    },
+    shadow::imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
 };
 
-/// The pass.
-pub(crate) const RAY_MARCH: &str = include_str!("ray_march.wgsl");
+/// What a step reads.
+pub(crate) const PARAMS: &str = include_str!("params.wgsl");
+const RAY_MARCH: &str = include_str!("ray_march.wgsl");
+const AREA: &str = include_str!("area.wgsl");
+const AREA_RESOLVE: &str = include_str!("area_resolve.wgsl");
 
-/// `RayMarchParams` of `ray_march.wgsl`.
+/// Pixels a side that a workgroup of `area.wgsl` takes.
+const TILE: u32 = 8;
+
+/// `RayMarchParams` of `params.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct ParamsUniform {
@@ -36,25 +49,117 @@ impl ParamsUniform {
     }
 }
 
-/// The technique's shader.
-pub(crate) fn program(device: &wgpu::Device, shared: &Shared) -> ScreenProgram {
-    let own = [layout::uniform::<ParamsUniform>(0)];
-    ScreenProgram::new(
-        device,
-        shared,
-        "ray march",
-        &[MARCH, RAY_MARCH],
-        "ray_march",
-        &own,
-    )
+/// The technique's shaders.
+pub(crate) struct Programs {
+    march: ScreenProgram,
+    maps: imperfect::Programs,
+    march_area: ComputeProgram,
+    resolve: ScreenProgram,
+}
+
+impl Programs {
+    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let modules = [MARCH, PARAMS, RAY_MARCH];
+        let own = [layout::uniform::<ParamsUniform>(0)];
+        let march = ScreenProgram::new(device, shared, "ray march", &modules, "ray_march", &own);
+        let modules = [PARAMS, IMPERFECT, LOOKUP, AREA];
+        let own = [
+            layout::uniform::<BatchUniform>(0),
+            layout::storage(1, true),
+            layout::storage(2, true),
+            layout::storage(3, true),
+            layout::uniform::<ParamsUniform>(4),
+            layout::storage(5, false),
+        ];
+        let march_area =
+            ComputeProgram::new(device, shared, "march", &modules, "ray_march_area", &own);
+        let modules = [AREA_RESOLVE];
+        let own = [layout::storage(0, true)];
+        let resolve = ScreenProgram::new(
+            device,
+            shared,
+            "resolve",
+            &modules,
+            "ray_march_resolve",
+            &own,
+        );
+        Self {
+            march,
+            maps: imperfect::Programs::new(device, shared),
+            march_area,
+            resolve,
+        }
+    }
 }
 
 /// The passes of one light.
 pub(crate) fn passes(
     params: &Params,
-    program: &ScreenProgram,
+    programs: &Programs,
     scope: &mut LightScope<'_>,
 ) -> Vec<Pass> {
-    let params = scope.uniform("ray march params", &ParamsUniform::new(params));
-    vec![scope.full_screen(program, "ray march", &[params.as_entire_binding()])]
+    let uniform = scope.uniform("ray march params", &ParamsUniform::new(params));
+    match AreaLight::new(&scope.light.emitter) {
+        Some(area) => march_area(params, programs, scope, &area, &uniform),
+        None => {
+            let resources = [uniform.as_entire_binding()];
+            vec![scope.full_screen(&programs.march, "ray march", &resources)]
+        }
+    }
+}
+
+fn march_area(
+    params: &Params,
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+    area: &AreaLight,
+    uniform: &wgpu::Buffer,
+) -> Vec<Pass> {
+    let (count, limits) = (area.positions.len() as u32, scope.device.limits());
+    let maps = Maps::new(&scope.inputs, params.points, count, 0, &limits);
+    let sums = scope.storage("marched light", sums_bytes(scope.size));
+    let (buffers, sample) = programs.maps.sample(scope, area, &maps);
+    let mut passes = vec![sample];
+    for index in 0..buffers.batches.values.len() as u32 {
+        if let Some(cloud) = scope.inputs.points {
+            passes.extend(programs.maps.draw(scope, &buffers, index, cloud.points));
+        }
+        let resources = [
+            buffers.batches.binding(index),
+            buffers.samples.as_entire_binding(),
+            buffers.maps.as_entire_binding(),
+            buffers.colors.as_entire_binding(),
+            uniform.as_entire_binding(),
+            sums.as_entire_binding(),
+        ];
+        let [x, y] = scope.size.map(|n| n.div_ceil(TILE));
+        passes.push(scope.compute(&programs.march_area, "ray march", &resources, [x, y, 1]));
+    }
+    let resources = [sums.as_entire_binding()];
+    passes.push(scope.full_screen(&programs.resolve, "resolve", &resources));
+    passes
+}
+
+fn sums_bytes(size: [u32; 2]) -> u64 {
+    16 * u64::from(size[0]) * u64::from(size[1])
+}
+
+/// Refuses a rectangular light whose buffers the device cannot bind.
+pub(crate) fn check(
+    params: &Params,
+    limits: &wgpu::Limits,
+    size: [u32; 2],
+    index: usize,
+    light: &Light,
+    inputs: &LightInputs<'_>,
+) -> Result<(), PrepareError> {
+    if !matches!(light.emitter, Emitter::Rect { .. }) {
+        return Ok(());
+    }
+    Maps::new(inputs, params.points, 1, 0, limits).check(
+        INFO.name,
+        index,
+        limits,
+        &[("marched light", sums_bytes(size))],
+    )
 }

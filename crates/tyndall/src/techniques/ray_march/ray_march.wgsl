@@ -1,12 +1,5 @@
 // Brute force: N steps a ray, each looked up in the shadow map (Chen 2011, eq. 1, as a Riemann sum).
 
-const RAY_MARCH_EQUIANGULAR: u32 = 1u;
-
-struct RayMarchParams {
-    steps: u32,
-    spacing: u32,
-}
-
 @group(2) @binding(0) var<uniform> ray_march_params: RayMarchParams;
 
 @fragment

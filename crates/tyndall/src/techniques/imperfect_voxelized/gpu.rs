@@ -1,0 +1,284 @@
+//! The GPU side: maps, voxels and their scan of a batch of samples at a time, gathered into one picture.
+
+use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
+
+use super::{Gather, Params};
+use crate::{
+    cpu::LightSource,
+    effect::{CountValue, LightInputs},
+    epipolar::{
+        Resolution,
+        gpu::{EPIPOLAR, EpipolarUniform},
+        grid::{EpipolarGrid, GridScene},
+    },
+    error::PrepareError,
+    gpu::{
+        fill::Fill,
+        layout,
+        pass::Pass,
+        program::{ComputeProgram, ScreenProgram},
+        scope::{LightScope, Shared},
+    },
+    shadow::imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
+    voxels::gpu::{self as voxels, Scan, VOXELS},
+};
+
+const RECTIFY: &str = include_str!("rectify.wgsl");
+const PARAMS: &str = include_str!("params.wgsl");
+const GATHER: &str = include_str!("gather.wgsl");
+const RESOLVE: &str = include_str!("resolve.wgsl");
+
+/// Light rays that a workgroup takes.
+const THREADS: u32 = 64;
+/// Pixels a side that a workgroup of `gather.wgsl` takes.
+const TILE: u32 = 8;
+
+/// `IvsvParams` of `params.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct ParamsUniform {
+    size: [u32; 2],
+    pitch: u32,
+    turns: u32,
+    weighting: u32,
+    pad: [u32; 3],
+}
+
+impl ParamsUniform {
+    fn new(params: &Params, size: [u32; 2]) -> Self {
+        let (pitch, turns) = match params.gather {
+            Gather::Full => (1, 1),
+            Gather::Interleaved => (1, 9),
+            Gather::Quarter => (2, 1),
+        };
+        Self {
+            size: size.map(|n| n.div_ceil(pitch)),
+            pitch,
+            turns,
+            weighting: params.weighting as u32,
+            pad: [0; 3],
+        }
+    }
+
+    fn pixels(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+}
+
+/// The technique's shaders.
+pub(crate) struct Programs {
+    maps: imperfect::Programs,
+    fill: Fill,
+    scan: Scan,
+    rectify: ComputeProgram,
+    gather: ComputeProgram,
+    resolve: ScreenProgram,
+}
+
+impl Programs {
+    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let batch = layout::uniform::<BatchUniform>(0);
+        let read = |binding| layout::storage(binding, true);
+        let compute = |label, modules: &[&str], entry_point, own: &[_]| {
+            ComputeProgram::new(device, shared, label, modules, entry_point, own)
+        };
+        let own = [batch, read(1), read(2), read(3), layout::storage(4, false)];
+        let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, RECTIFY];
+        let rectify = compute("rectify", &modules, "rectify", &own);
+        let own = [
+            batch,
+            read(1),
+            read(2),
+            read(3),
+            read(4),
+            read(5),
+            layout::uniform::<ParamsUniform>(6),
+            layout::storage(7, false),
+        ];
+        let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, GATHER];
+        let gather = compute("gather", &modules, "ivsv_gather", &own);
+        let own = [batch, layout::uniform::<ParamsUniform>(1), read(2)];
+        let modules = [IMPERFECT, PARAMS, RESOLVE];
+        Self {
+            maps: imperfect::Programs::new(device, shared),
+            fill: Fill::new(device, shared),
+            scan: Scan::new(device, shared),
+            rectify,
+            gather,
+            resolve: ScreenProgram::new(device, shared, "resolve", &modules, "ivsv_resolve", &own),
+        }
+    }
+}
+
+/// What all batches of a light share.
+struct Buffers {
+    light: imperfect::Buffers,
+    grids: wgpu::Buffer,
+    voxels: wgpu::Buffer,
+    params: wgpu::Buffer,
+    sums: wgpu::Buffer,
+}
+
+/// The passes of one light: five a batch, and two.
+pub(crate) fn passes(
+    params: &Params,
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+) -> Vec<Pass> {
+    let Some(area) = AreaLight::new(&scope.light.emitter) else {
+        // Refused by the table: it is no rectangle.
+        return Vec::new();
+    };
+    let samples = area.positions.len() as u32;
+    let maps = maps(params, samples, &scope.inputs, &scope.device.limits());
+    let picture = ParamsUniform::new(params, scope.size);
+    let (light, sample) = programs.maps.sample(scope, &area, &maps);
+    let bytes = voxels::bytes(params.resolution) * u64::from(maps.batch);
+    let buffers = Buffers {
+        light,
+        grids: scope.upload("grids of the samples", &grids(params, &area, scope)),
+        voxels: scope.storage("voxels of the samples", bytes),
+        params: scope.uniform("ivsv params", &picture),
+        sums: scope.storage("gathered light", 16 * picture.pixels()),
+    };
+    let mut passes = vec![sample];
+    for batch in 0..buffers.light.batches.values.len() as u32 {
+        if let Some(cloud) = scope.inputs.points {
+            passes.extend(
+                programs
+                    .maps
+                    .draw(scope, &buffers.light, batch, cloud.points),
+            );
+            passes.extend(voxelize(
+                programs,
+                scope,
+                &buffers,
+                batch,
+                params.resolution,
+            ));
+        }
+        passes.push(gather(programs, scope, &buffers, batch, &picture));
+    }
+    let resources = [
+        buffers.light.batches.binding(0),
+        buffers.params.as_entire_binding(),
+        buffers.sums.as_entire_binding(),
+    ];
+    passes.push(scope.full_screen(&programs.resolve, "resolve", &resources));
+    count(scope, &passes, u64::from(samples));
+    passes
+}
+
+/// The voxels of a batch.
+fn voxelize(
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+    buffers: &Buffers,
+    index: u32,
+    side: u32,
+) -> [Pass; 2] {
+    let count = buffers.light.batches.values[index as usize].count;
+    let clear = programs
+        .fill
+        .dispatch(scope, "no voxel", &buffers.voxels, 0);
+    let resources = [
+        buffers.light.batches.binding(index),
+        buffers.light.samples.as_entire_binding(),
+        buffers.grids.as_entire_binding(),
+        buffers.light.maps.as_entire_binding(),
+        buffers.voxels.as_entire_binding(),
+    ];
+    let groups = [side / THREADS, side, count];
+    let rectify = scope.dispatch(&programs.rectify, &resources, groups);
+    [
+        Pass::compute(scope.pass_name("voxelize"), vec![clear, rectify]),
+        programs.scan.pass(scope, side, &buffers.voxels, count),
+    ]
+}
+
+fn gather(
+    programs: &Programs,
+    scope: &LightScope<'_>,
+    buffers: &Buffers,
+    index: u32,
+    picture: &ParamsUniform,
+) -> Pass {
+    let resources = [
+        buffers.light.batches.binding(index),
+        buffers.light.samples.as_entire_binding(),
+        buffers.grids.as_entire_binding(),
+        buffers.light.maps.as_entire_binding(),
+        buffers.voxels.as_entire_binding(),
+        buffers.light.colors.as_entire_binding(),
+        buffers.params.as_entire_binding(),
+        buffers.sums.as_entire_binding(),
+    ];
+    let [x, y] = picture.size.map(|n| n.div_ceil(TILE));
+    scope.compute(&programs.gather, "gather", &resources, [x, y, 1])
+}
+
+/// The samples' epipolar grids.
+fn grids(params: &Params, area: &AreaLight, scope: &LightScope<'_>) -> Vec<EpipolarUniform> {
+    let resolution = Resolution {
+        slices: params.resolution,
+        samples: params.resolution,
+        epipole_radius: params.epipole_radius,
+    };
+    let (camera, size) = (scope.rays, scope.size);
+    let grid = |position: &glam::DVec3| {
+        let scene = GridScene {
+            camera,
+            size,
+            light: LightSource::Position(position.to_array()),
+            cone: Some((area.normal, std::f64::consts::FRAC_PI_2)),
+            faces: &[],
+            side: params.resolution as usize,
+        };
+        let none = EpipolarUniform {
+            samples: params.resolution,
+            slices: params.resolution,
+            position: (*position - camera.eye).as_vec3().to_array(),
+            ..EpipolarUniform::NONE
+        };
+        EpipolarGrid::new(&scene, &resolution).map_or(none, |grid| {
+            grid.in_rows(&scene, params.resolution).uniform(1)
+        })
+    };
+    area.positions.par_iter().map(grid).collect()
+}
+
+/// How the maps are made, and how many samples' maps and voxels the device binds at once.
+fn maps(params: &Params, samples: u32, inputs: &LightInputs<'_>, limits: &wgpu::Limits) -> Maps {
+    let at_once = if params.batched { samples } else { 1 };
+    let bytes = voxels::bytes(params.resolution);
+    Maps::new(inputs, params.points, at_once, bytes, limits)
+}
+
+/// Passes, dispatches and samples of the light.
+fn count(scope: &mut LightScope<'_>, passes: &[Pass], samples: u64) {
+    let dispatches: usize = passes.iter().map(Pass::parts).sum();
+    for (name, value) in [
+        ("samples", samples),
+        ("passes", passes.len() as u64),
+        ("dispatches and draws", dispatches as u64),
+    ] {
+        scope.count(name, CountValue::Known(value));
+    }
+}
+
+/// Refuses what the device cannot bind.
+pub(crate) fn check(
+    params: &Params,
+    limits: &wgpu::Limits,
+    size: [u32; 2],
+    index: usize,
+    inputs: &LightInputs<'_>,
+) -> Result<(), PrepareError> {
+    let pixels = ParamsUniform::new(params, size).pixels();
+    let others = [
+        ("voxels of a sample", voxels::bytes(params.resolution)),
+        ("gathered light", 16 * pixels),
+    ];
+    maps(params, 1, inputs, limits).check(super::INFO.name, index, limits, &others)
+}

@@ -1,0 +1,106 @@
+//! `vsv`: voxelized shadow volumes of one light (Wyman 2011; Wyman and Dai 2013, section 2.6).
+//!
+//! The space that the camera sees is cut along epipolar coordinates: slices through eye and light, in each slice view
+//! rays by light rays. A voxel is a bit, dark where the light does not reach, and all bits of a view ray lie in one
+//! row of words. So visibility takes three steps that cost the same whatever the scene: **voxelize** the shadow map (the
+//! end of each light ray sets one voxel, in the row of the view ray that sees it), **scan** (the OR along each light ray,
+//! away from the light: what is behind its end is dark), and **gather** (a pixel reads its row).
+//!
+//! # What is integrated
+//!
+//! Runs of lit voxels of a row become stretches of the view ray, each integrated in closed form: exponentials of the sun,
+//! airlight tables of a lamp, quadrature where a cone fades. Light pictures and coloured glass are looked up in the
+//! middle of every voxel that is lit.
+//!
+//! - Ranges of slices, view rays and light rays are chosen each frame to hold what the picture sees (the paper's dynamic
+//!   range selection).
+//! - Along slices the light of the two nearest is interpolated. Along light rays a border lies half-way between two of
+//!   them, which is what interpolation of their bits comes to. Along view rays there is none: visibility changes there once.
+//! - A view ray's row is that whose middle it is nearest to, and a light ray's end is rounded to the same middles: errors
+//!   are as often light as dark, and the medium needs no bias.
+//! - Near the axis a view ray crosses few light rays. There the question is what lies between eye and light: two look-ups
+//!   of the shadow map, along the ray's two ends, are compared with distances. So is every ray where the eye is at the
+//!   light, or an orthographic view runs along the sun.
+//!
+//! # Parameters
+//!
+//! - `resolution`: slices, view rays and light rays of the grid, each; a power of two.
+//! - `epipole_radius`: view rays this near to the axis compare distances [pixels].
+//!
+//! # Cost
+//!
+//! `resolution`^2 look-ups in the shadow map and `resolution`^3 / 8 bytes, 16 MiB at 512, of which clearing, voxels and
+//! scan write each word once or twice; then two rows a pixel. 1024 takes 128 MiB, as much as a device need bind at all.
+//! Devices that bind less refuse by name.
+//!
+//! # Where it fails
+//!
+//! Shadows move by up to half a voxel: borders have steps, which 512 leave small and 64 do not. An occluder seen under
+//! less than a slice is hit or missed by chance. `min-max`, which has the same coordinates, is exact at every border; what voxels
+//! have over it is that a row costs the same in a forest as before a wall.
+
+#[cfg(feature = "gpu")]
+pub(crate) mod gpu;
+
+use super::{
+    Backends, LightKind, Technique, TechniqueInfo, Value,
+    params::{Param, Parameters},
+};
+
+/// The entry in the table.
+pub(super) const INFO: TechniqueInfo = TechniqueInfo {
+    name: "vsv",
+    about: "voxelized shadow volumes: bits over epipolar space, a view ray's visibility in one row",
+    citation: "Wyman, Voxelized Shadow Volumes, HPG 2011; Wyman & Dai, Imperfect Voxelized Shadow Volumes, HPG 2013",
+    lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    backends: Backends::Gpu,
+    default: || Technique::Voxelized(Params::DEFAULT),
+};
+
+/// Parameters of `vsv`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// Slices, view rays and light rays, each (a power of two from 64 to 1024).
+    pub resolution: u32,
+    /// Radius about the axis within which distances are compared [pixels] (0 to 100).
+    pub epipole_radius: f64,
+}
+
+impl Params {
+    const DEFAULT: Self = Self {
+        resolution: 512,
+        epipole_radius: 0.5,
+    };
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl Parameters for Params {
+    const TECHNIQUE: &'static str = INFO.name;
+    const PARAMS: &'static [&'static [Param<Self>]] = &[&[
+        Param {
+            key: "resolution",
+            about: "slices, view rays and light rays, each",
+            range: "64, 128, 256, 512 or 1024",
+            get: |p| Value::Integer(p.resolution.into()),
+            set: |p, v| {
+                p.resolution = v.integer(64..=1024).filter(|n| n.is_power_of_two())?;
+                Some(())
+            },
+        },
+        Param {
+            key: "epipole_radius",
+            about: "rays this near to the axis compare distances [pixels]",
+            range: "a number from 0 to 100",
+            get: |p| Value::Real(p.epipole_radius),
+            set: |p, v| {
+                p.epipole_radius = v.real(0.0..=100.0)?;
+                Some(())
+            },
+        },
+    ]];
+}
