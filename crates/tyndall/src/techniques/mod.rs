@@ -336,7 +336,7 @@ mod tests {
         let unknown = technique.set("stepz", &Value::Integer(3)).unwrap_err();
         assert_eq!(
             unknown.to_string(),
-            "technique `ray-march` has no parameter `stepz`; it has steps, spacing"
+            "technique `ray-march` has no parameter `stepz`; it has steps, spacing, points"
         );
         for wrong in [
             Value::Integer(0),

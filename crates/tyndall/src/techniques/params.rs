@@ -115,6 +115,58 @@ pub(crate) struct Param<P> {
     pub(crate) set: fn(&mut P, &Value) -> Option<()>,
 }
 
+/// The [`Param`] of the field of its name, by what kind of value it takes, which values, and one line about it.
+macro_rules! param {
+    (whole $field:ident, $low:literal..=$high:literal, $about:literal) => {
+        $crate::techniques::params::param!(
+            whole $field,
+            $low..=$high,
+            $about,
+            concat!("a whole number from ", $low, " to ", $high),
+            |_| true
+        )
+    };
+    // Some whole numbers of a range, in words.
+    (whole $field:ident, $low:literal..=$high:literal, $about:literal, $range:expr, $allowed:expr) => {
+        $crate::techniques::params::Param {
+            key: stringify!($field),
+            about: $about,
+            range: $range,
+            get: |p| $crate::techniques::Value::Integer(p.$field.into()),
+            set: |p, v| {
+                p.$field = v.integer($low..=$high).filter($allowed)?;
+                Some(())
+            },
+        }
+    };
+    (real $field:ident, $low:literal..=$high:literal, $about:literal) => {
+        $crate::techniques::params::Param {
+            key: stringify!($field),
+            about: $about,
+            range: concat!("a number from ", $low, " to ", $high),
+            get: |p| $crate::techniques::Value::Real(p.$field),
+            set: |p, v| {
+                p.$field = v.real($low as f64..=$high as f64)?;
+                Some(())
+            },
+        }
+    };
+    // One of a list of words, which are named again.
+    (choice $field:ident, $choices:ident, $about:literal, $range:literal) => {
+        $crate::techniques::params::Param {
+            key: stringify!($field),
+            about: $about,
+            range: $range,
+            get: |p| $crate::techniques::params::word(&p.$field, $choices),
+            set: |p, v| {
+                p.$field = v.choice($choices)?;
+                Some(())
+            },
+        }
+    };
+}
+pub(crate) use param;
+
 /// The parameters of a technique.
 pub(crate) trait Parameters: Default + Sized + 'static {
     /// The technique's name.

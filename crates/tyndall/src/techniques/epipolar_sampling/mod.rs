@@ -49,8 +49,8 @@
 pub(crate) mod gpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters, word},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, param},
 };
 #[cfg(feature = "gpu")]
 use crate::{
@@ -158,86 +158,27 @@ impl Default for Params {
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
     const PARAMS: &'static [&'static [Param<Self>]] = &[&[
-        Param {
-            key: "slices",
-            about: "epipolar slices; 0: half of width plus height",
-            range: "a whole number from 0 to 4096",
-            get: |p| Value::Integer(p.slices.into()),
-            set: |p, v| {
-                p.slices = v.integer(0..=4096)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "samples",
-            about: "samples a slice; 0: half of the picture's longer side",
-            range: "0, or a whole number from 2 to 4096",
-            get: |p| Value::Integer(p.samples.into()),
-            set: |p, v| {
-                p.samples = v.integer(0..=4096).filter(|n| *n != 1)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "initial_step",
-            about: "samples from one that is marched to the next, where no depths differ",
-            range: "a power of two from 1 to 128",
-            get: |p| Value::Integer(p.initial_step.into()),
-            set: |p, v| {
-                p.initial_step = v.integer(1..=128).filter(|n| n.is_power_of_two())?;
-                Some(())
-            },
-        },
-        Param {
-            key: "downscale",
-            about: "how many times smaller the picture is on each side that samples are unwarped to",
-            range: "1, 2 or 4",
-            get: |p| Value::Integer(p.downscale.into()),
-            set: |p, v| {
-                p.downscale = v.integer(1..=4).filter(|n| n.is_power_of_two())?;
-                Some(())
-            },
-        },
-        Param {
-            key: "threshold",
-            about: "relative difference between neighbours past which one does not stand for the other",
-            range: "a number from 0.0001 to 1",
-            get: |p| Value::Real(p.threshold),
-            set: |p, v| {
-                p.threshold = v.real(1e-4..=1.0)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "criterion",
-            about: "what must differ for a break between samples: their depths, or their unshadowed light",
-            range: "\"depth\" or \"in-scatter\"",
-            get: |p| word(&p.criterion, CRITERIA),
-            set: |p, v| {
-                p.criterion = v.choice(CRITERIA)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "tree",
-            about: "march with 1-D min/max trees, or column by column",
-            range: "\"min-max\" or \"none\"",
-            get: |p| word(&p.tree, TREES),
-            set: |p, v| {
-                p.tree = v.choice(TREES)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "show",
-            about: "the light, or in its place a view of how it was computed",
-            range: "\"light\", \"samples\", \"depth-breaks\", \"corrected\" or \"in-scatter\"",
-            get: |p| word(&p.show, SHOWN),
-            set: |p, v| {
-                p.show = v.choice(SHOWN)?;
-                Some(())
-            },
-        },
+        param!(whole slices, 0..=4096, "epipolar slices; 0: half of width plus height"),
+        param!(whole samples, 0..=4096,
+            "samples a slice; 0: half of the picture's longer side",
+            "0, or a whole number from 2 to 4096", |n| *n != 1),
+        param!(whole initial_step, 1..=128,
+            "samples from one that is marched to the next, where no depths differ",
+            "a power of two from 1 to 128", |n| n.is_power_of_two()),
+        param!(whole downscale, 1..=4,
+            "how many times smaller the picture is on each side that samples are unwarped to",
+            "1, 2 or 4", |n| n.is_power_of_two()),
+        param!(real threshold, 0.0001..=1,
+            "relative difference between neighbours past which one does not stand for the other"),
+        param!(choice criterion, CRITERIA,
+            "what must differ for a break between samples: their depths, or their unshadowed light",
+            "\"depth\" or \"in-scatter\""),
+        param!(choice tree, TREES,
+            "march with 1-D min/max trees, or column by column",
+            "\"min-max\" or \"none\""),
+        param!(choice show, SHOWN,
+            "the light, or in its place a view of how it was computed",
+            "\"light\", \"samples\", \"depth-breaks\", \"corrected\" or \"in-scatter\""),
     ]];
 }
 

@@ -27,8 +27,8 @@
 pub(crate) mod cpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters, Sliced, Slicing},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, Sliced, Slicing, param},
 };
 use crate::epipolar::Resolution;
 
@@ -79,16 +79,7 @@ impl Sliced for Params {
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
     const PARAMS: &'static [&'static [Param<Self>]] = &[
-        &[Param {
-            key: "rank",
-            about: "products in the low-rank sum",
-            range: "a whole number from 1 to 16",
-            get: |p| Value::Integer(p.rank.into()),
-            set: |p, v| {
-                p.rank = v.integer(1..=16)?;
-                Some(())
-            },
-        }],
+        &[param!(whole rank, 1..=16, "products in the low-rank sum")],
         Slicing::<Self>::PARAMS,
     ];
 }

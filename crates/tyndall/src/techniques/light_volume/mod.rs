@@ -62,8 +62,8 @@ pub(crate) mod tessellation;
 mod twin;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, param},
 };
 
 /// The entry in the table.
@@ -96,14 +96,6 @@ impl Default for Params {
 
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
-    const PARAMS: &'static [&'static [Param<Self>]] = &[&[Param {
-        key: "tolerance",
-        about: "how far merging cells may move the surface [widths of a texel]; 0 merges none",
-        range: "a number from 0 to 100",
-        get: |p| Value::Real(p.tolerance),
-        set: |p, v| {
-            p.tolerance = v.real(0.0..=100.0)?;
-            Some(())
-        },
-    }]];
+    const PARAMS: &'static [&'static [Param<Self>]] = &[&[param!(real tolerance, 0..=100,
+            "how far merging cells may move the surface [widths of a texel]; 0 merges none")]];
 }

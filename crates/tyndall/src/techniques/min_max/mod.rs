@@ -91,7 +91,7 @@ pub(crate) mod svd;
 
 use super::{
     Backends, LightKind, Technique, TechniqueInfo,
-    params::{Param, Parameters, Sliced, Slicing, Value, word},
+    params::{Param, Parameters, Sliced, Slicing, param},
 };
 use crate::epipolar::Resolution;
 
@@ -186,36 +186,13 @@ impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
     const PARAMS: &'static [&'static [Param<Self>]] = &[
         &[
-            Param {
-                key: "integrator",
-                about: "how lit stretches are integrated",
-                range: "\"analytic\" or \"svd\"",
-                get: |p| word(&p.integrator, INTEGRATORS),
-                set: |p, v| {
-                    p.integrator = v.choice(INTEGRATORS)?;
-                    Some(())
-                },
-            },
-            Param {
-                key: "rank",
-                about: "terms of the svd integrator",
-                range: "a whole number from 1 to 16",
-                get: |p| Value::Integer(p.rank.into()),
-                set: |p, v| {
-                    p.rank = v.integer(1..=16)?;
-                    Some(())
-                },
-            },
-            Param {
-                key: "show",
-                about: "what is drawn: the light, or how it was found (GPU)",
-                range: "\"light\", \"slices\", \"segments\", \"nodes\" or \"map\"",
-                get: |p| word(&p.show, SHOWS),
-                set: |p, v| {
-                    p.show = v.choice(SHOWS)?;
-                    Some(())
-                },
-            },
+            param!(choice integrator, INTEGRATORS,
+                "how lit stretches are integrated",
+                "\"analytic\" or \"svd\""),
+            param!(whole rank, 1..=16, "terms of the svd integrator"),
+            param!(choice show, SHOWS,
+                "what is drawn: the light, or how it was found (GPU)",
+                "\"light\", \"slices\", \"segments\", \"nodes\" or \"map\""),
         ],
         Slicing::<Self>::PARAMS,
     ];

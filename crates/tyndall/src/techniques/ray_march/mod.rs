@@ -24,8 +24,8 @@ pub(crate) mod cpu;
 pub(crate) mod gpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters, word},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, param},
 };
 
 /// The entry in the table.
@@ -86,35 +86,11 @@ impl Default for Params {
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
     const PARAMS: &'static [&'static [Param<Self>]] = &[&[
-        Param {
-            key: "steps",
-            about: "steps a ray",
-            range: "a whole number from 1 to 65536",
-            get: |p| Value::Integer(p.steps.into()),
-            set: |p, v| {
-                p.steps = v.integer(1..=65536)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "spacing",
-            about: "equal lengths, or equal angles at a local light",
-            range: "\"equal\" or \"equiangular\"",
-            get: |p| word(&p.spacing, SPACINGS),
-            set: |p, v| {
-                p.spacing = v.choice(SPACINGS)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "points",
-            about: "of a rectangular light: points of the scene's surfaces that a sample's map is made of",
-            range: "a whole number from 1 to 1048576",
-            get: |p| Value::Integer(p.points.into()),
-            set: |p, v| {
-                p.points = v.integer(1..=1 << 20)?;
-                Some(())
-            },
-        },
+        param!(whole steps, 1..=65536, "steps a ray"),
+        param!(choice spacing, SPACINGS,
+            "equal lengths, or equal angles at a local light",
+            "\"equal\" or \"equiangular\""),
+        param!(whole points, 1..=1048576,
+            "of a rectangular light: points of the scene's surfaces that a sample's map is made of"),
     ]];
 }

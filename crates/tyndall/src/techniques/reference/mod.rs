@@ -15,8 +15,8 @@
 pub(crate) mod cpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters, word},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, param},
 };
 
 /// The entry in the table.
@@ -73,25 +73,9 @@ impl Default for Params {
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
     const PARAMS: &'static [&'static [Param<Self>]] = &[&[
-        Param {
-            key: "tolerance",
-            about: "largest relative error of the quadrature of a lit stretch",
-            range: "a number from 1e-9 to 0.1",
-            get: |p| Value::Real(p.tolerance),
-            set: |p, v| {
-                p.tolerance = v.real(1e-9..=0.1)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "visibility",
-            about: "from the scene's triangles, or from the shadow map texel by texel",
-            range: "\"traced\" or \"shadow-map\"",
-            get: |p| word(&p.visibility, VISIBILITIES),
-            set: |p, v| {
-                p.visibility = v.choice(VISIBILITIES)?;
-                Some(())
-            },
-        },
+        param!(real tolerance, 1e-9..=0.1, "largest relative error of the quadrature of a lit stretch"),
+        param!(choice visibility, VISIBILITIES,
+            "from the scene's triangles, or from the shadow map texel by texel",
+            "\"traced\" or \"shadow-map\""),
     ]];
 }
