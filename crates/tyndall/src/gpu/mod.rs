@@ -3,6 +3,7 @@
 pub(crate) mod airlight;
 pub(crate) mod fill;
 pub(crate) mod layout;
+pub(crate) mod limits;
 pub(crate) mod pass;
 pub(crate) mod pool;
 pub(crate) mod program;

@@ -57,6 +57,7 @@ use crate::{
     effect::LightInputs,
     error::PrepareError,
     frame::{Light, ShadowProjection},
+    gpu::limits,
 };
 
 /// The entry in the table.
@@ -269,22 +270,15 @@ impl Params {
         inputs: &LightInputs<'_>,
     ) -> Result<(), PrepareError> {
         let bytes = Sizes::new(self, size, light, inputs).bytes();
-        let allowed = limits.max_storage_buffer_binding_size;
-        for (what, needed) in [
-            ("min/max trees", bytes.nodes),
-            ("samples", bytes.values),
-            ("lists of pixels", bytes.list),
-        ] {
-            if needed > allowed {
-                return Err(PrepareError::Unsupported {
-                    technique: INFO.name,
-                    what: format!(
-                        "`lights[{index}]` within `max_storage_buffer_binding_size` {allowed}, for its {what} take {needed} bytes"
-                    ),
-                });
-            }
-        }
-        Ok(())
+        limits::check_storage(
+            limits,
+            &format!("technique `{}` (lights[{index}])", INFO.name),
+            &[
+                ("min/max trees", bytes.nodes),
+                ("samples", bytes.values),
+                ("lists of pixels", bytes.list),
+            ],
+        )
     }
 }
 

@@ -12,7 +12,7 @@ use crate::{
     error::PrepareError,
     frame::{Emitter, Light},
     gpu::{
-        layout,
+        layout, limits,
         pass::Pass,
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
@@ -240,24 +240,14 @@ pub(crate) fn check(
         ..EpipolarUniform::NONE
     };
     let bytes = Bytes::new(&grid, inputs, tint_rows(params, light, inputs));
-    let limit = limits.max_storage_buffer_binding_size;
-    for (what, needed) in [
-        ("slices x samples", bytes.nodes),
-        ("slices x samples of its picture", bytes.tint_sums),
-    ] {
-        if needed > limit {
-            return Err(PrepareError::Limit {
-                what: format!(
-                    "{what} of technique `{}` (lights[{index}])",
-                    super::INFO.name
-                ),
-                needed,
-                limit,
-                name: "max_storage_buffer_binding_size",
-            });
-        }
-    }
-    Ok(())
+    limits::check_storage(
+        limits,
+        &format!("technique `{}` (lights[{index}])", super::INFO.name),
+        &[
+            ("slices x samples", bytes.nodes),
+            ("slices x samples of its picture", bytes.tint_sums),
+        ],
+    )
 }
 
 /// Uniform and samples of the svd integrator; nothing for the analytic one.
