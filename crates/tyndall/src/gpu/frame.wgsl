@@ -21,3 +21,11 @@ fn frame_full_screen(@builtin(vertex_index) vertex: u32) -> @builtin(position) v
 fn frame_ray(position: vec4f) -> Ray {
     return camera_ray(position.xy, textureLoad(frame_depth, vec2u(position.xy), 0));
 }
+
+// What the last pass of a light leaves in its pixel: the lights before this one and this one's radiance, and the mean
+// transmittance of the pixel's ray.
+fn frame_output(position: vec4f, ray: Ray, radiance: vec3f) -> vec4f {
+    let before = textureLoad(frame_lights_before, vec2u(position.xy), 0).rgb;
+    let left = transmittance(frame.medium.sigma_t, ray.length);
+    return vec4f(before + radiance, dot(left, vec3f(1.0 / 3.0)));
+}

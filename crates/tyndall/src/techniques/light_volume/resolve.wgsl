@@ -5,9 +5,7 @@
 @fragment
 fn light_volume_resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = frame_ray(position);
-    let before = textureLoad(frame_lights_before, vec2u(position.xy), 0).rgb;
-    let left = transmittance(frame.medium.sigma_t, ray.length);
-    return vec4f(before + light_volume_light(ray, vec2u(position.xy)), dot(left, vec3f(1.0 / 3.0)));
+    return frame_output(position, ray, light_volume_light(ray, vec2u(position.xy)));
 }
 
 fn light_volume_light(ray: Ray, pixel: vec2u) -> vec3f {

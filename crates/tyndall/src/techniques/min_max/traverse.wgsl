@@ -52,9 +52,7 @@ struct TraverseBorder {
 @fragment
 fn traverse(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = frame_ray(position);
-    let before = textureLoad(frame_lights_before, vec2u(position.xy), 0).rgb;
-    let left = transmittance(frame.medium.sigma_t, ray.length);
-    return vec4f(before + traverse_light(ray), dot(left, vec3f(1.0 / 3.0)));
+    return frame_output(position, ray, traverse_light(ray));
 }
 
 // The leaves that lie wholly within a span: the first, and one past the last.
