@@ -22,6 +22,8 @@ fn sizes() {
         ("forest", 642_056, 3, 0),
         ("terrain", 524_288, 1, 0),
         ("slats", 748, 4, 0),
+        ("sponge", 36_098, 2, 0),
+        ("crowd", 48_386, 5, 0),
         ("empty", 0, 0, 0),
     ];
     assert_eq!(BUILTINS.len(), cases.len());

@@ -5,6 +5,7 @@
 
 mod billeter;
 mod fit;
+mod lin;
 mod paper;
 mod poses;
 mod scaling;
@@ -36,6 +37,7 @@ use table::Table;
 enum Tables {
     Paper(Paper),
     LightVolumes(billeter::LightVolumes),
+    Films(lin::Films),
     Scaling,
     Poses,
 }
@@ -99,20 +101,14 @@ const SUITES: [Suite; 7] = [
     },
     Suite {
         name: "lin",
-        about: "Lin 2012, table 6.1",
-        tables: Tables::Paper(Paper {
-            techniques: &["hybrid"],
-            scenes: &[
-                subject::DRAGON,
-                subject::BUNNY,
-                subject::BUDDHA,
-                subject::DONUTS,
-                subject::BIG_SCENE,
-                subject::YEAH_RIGHT,
-            ],
+        about: "Lin 2012, table 6.1: temporal reuse",
+        tables: Tables::Films(lin::Films {
+            scenes: lin::SCENES,
             size: [640, 480],
             map: 1024,
-            spot_maps: &[],
+            timed: 24,
+            compared_size: [320, 240],
+            compared: 60,
         }),
     },
     Suite {
@@ -171,6 +167,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         let report = match &suite.tables {
             Tables::Paper(paper) => paper::run(paper, &bench, &mut stages)?,
             Tables::LightVolumes(suite) => billeter::run(suite, &bench, &mut stages)?,
+            Tables::Films(films) => lin::run(films, &bench, &mut stages)?,
             Tables::Scaling => scaling::run(&bench, &mut stages)?,
             Tables::Poses => poses::run(poses::POSES, &bench, &mut stages)?,
         };

@@ -6,6 +6,7 @@ mod builder;
 mod church;
 mod forest;
 mod glass;
+mod moving;
 mod noise;
 mod slats;
 mod terrain;
@@ -57,6 +58,16 @@ pub const BUILTINS: &[Builtin] = &[
         name: "slats",
         about: "a room behind a window blind: many thin shafts",
         make: slats::make,
+    },
+    Builtin {
+        name: "sponge",
+        about: "Menger's sponge on a floor: a thousand tunnels",
+        make: moving::sponge,
+    },
+    Builtin {
+        name: "crowd",
+        about: "a sponge and two dozen rings: much that can be moved",
+        make: moving::crowd,
     },
     Builtin {
         name: "empty",

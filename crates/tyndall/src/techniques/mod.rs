@@ -224,6 +224,7 @@ impl Technique {
             Self::LightVolume(p) => light_volume::gpu::check(p, limits, index, light, inputs),
             Self::MinMax(p) => min_max::gpu::check(p, limits, index, light, inputs),
             Self::Epipolar(p) => p.check_gpu(limits, size, index, light, inputs),
+            Self::Hybrid(_) => hybrid::gpu::check(limits, index, inputs),
             _ => Ok(()),
         }
     }
