@@ -23,6 +23,8 @@ fn sizes() {
         ("terrain", 524_288, 1, 0),
         ("slats", 748, 4, 0),
         ("hairball", 249_612, 2, 0),
+        ("sponge", 36_098, 2, 0),
+        ("crowd", 48_386, 5, 0),
         ("empty", 0, 0, 0),
     ];
     assert_eq!(BUILTINS.len(), cases.len());

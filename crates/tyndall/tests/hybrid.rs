@@ -215,8 +215,10 @@ fn bounds_hold_every_shadow() {
     let effect = on::effect(gpu);
     let bounds = technique("hybrid", &[("show", Value::Word("bounds".into()))]);
     let (mut shadows, mut spare, mut rays_without) = (0, 0.0, 0);
-    for stage in plain_stages() {
-        // No map is read, only where the light is.
+    for mut stage in plain_stages() {
+        // The stages' maps are not of these triangles.
+        stage.frame.lights[0].shadow = None;
+        stage.lights[0].shadow_map = None;
         if stage.name.starts_with("sun without") || stage.name.starts_with("lamp, standard") {
             continue;
         }

@@ -5,6 +5,7 @@
 
 mod billeter;
 mod fit;
+mod lin;
 mod paper;
 mod poses;
 mod scaling;
@@ -38,6 +39,7 @@ enum Tables {
     Paper(Paper),
     LightVolumes(billeter::LightVolumes),
     Epipolar(yusov::Epipolar),
+    Films(lin::Films),
     Scaling,
     Poses,
 }
@@ -111,21 +113,14 @@ const SUITES: [Suite; 7] = [
     },
     Suite {
         name: "lin",
-        about: "Lin 2012, table 6.1",
-        tables: Tables::Paper(Paper {
-            techniques: &["hybrid"],
-            scenes: &[
-                subject::DRAGON,
-                subject::BUNNY,
-                subject::BUDDHA,
-                subject::DONUTS,
-                subject::BIG_SCENE,
-                subject::YEAH_RIGHT,
-            ],
+        about: "Lin 2012, table 6.1: temporal reuse",
+        tables: Tables::Films(lin::Films {
+            scenes: lin::SCENES,
             size: [640, 480],
-            reduction: paper::REDUCTION,
             map: 1024,
-            spot_maps: &[],
+            timed: 24,
+            compared_size: [320, 240],
+            compared: 60,
         }),
     },
     Suite {
@@ -185,6 +180,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
             Tables::Paper(paper) => paper::run(paper, &bench, &mut stages)?,
             Tables::LightVolumes(suite) => billeter::run(suite, &bench, &mut stages)?,
             Tables::Epipolar(suite) => yusov::run(suite, &bench, &mut stages)?,
+            Tables::Films(films) => lin::run(films, &bench, &mut stages)?,
             Tables::Scaling => scaling::run(&bench, &mut stages)?,
             Tables::Poses => poses::run(poses::POSES, &bench, &mut stages)?,
         };

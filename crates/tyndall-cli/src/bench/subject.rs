@@ -80,13 +80,24 @@ pub(super) const DONUTS: Subject = subject(
     asset!("donuts-dragon.glb", "donuts-dragon"),
     "builtin:slats",
 );
-pub(super) const BIG_SCENE: Subject = subject("bigScene", None, "builtin:forest");
-pub(super) const YEAH_RIGHT: Subject = subject("yeahRight", None, "builtin:church");
+pub(super) const BIG_SCENE: Subject = subject(
+    "bigScene",
+    asset!("builtin:crowd", "crowd"),
+    "builtin:crowd",
+);
+pub(super) const YEAH_RIGHT: Subject = subject(
+    "yeahRight",
+    asset!("builtin:sponge", "sponge"),
+    "builtin:sponge",
+);
 pub(super) const DONUTS_RECT: Subject = subject(
     "donuts, area light",
     asset!("donuts-dragon.glb", "donuts-rect"),
     "builtin:slats",
 );
+
+/// How files of scenes begin that are made by code.
+const BUILTIN: &str = "builtin:";
 
 /// The picture that SIBENIKTEX's light shines through, among the assets.
 const PICTURE: &str = "rose-window.png";
@@ -100,30 +111,8 @@ impl Subject {
         map: u32,
         stages: &mut Stages,
     ) -> Result<(Setup, String), Failure> {
-        let [width, height] = size;
-        let overrides = [
-            format!("size=[{width},{height}]"),
-            format!("light.0.shadow_map={map}"),
-        ];
-        let overrides = overrides
-            .iter()
-            .map(|text| text.parse())
-            .collect::<Result<Vec<Override>, _>>()
-            .map_err(Failure::input)?;
-        let (shot, mut what) = match self.asset_in(assets) {
-            Some((folder, asset)) => {
-                let file = folder.join(format!("{}.toml", self.name));
-                (
-                    Shot::of_text(&file, asset.shot, &overrides),
-                    asset.file.to_owned(),
-                )
-            }
-            None => {
-                let shot = Shot::load(Path::new(self.stand_in), None, &overrides);
-                (shot, format!("{} in its place", self.stand_in))
-            }
-        };
-        let mut setup = Setup::new(&shot.map_err(Failure::input)?, stages)?;
+        let (shot, mut what) = self.shot(assets, size, map)?;
+        let mut setup = Setup::new(&shot, stages)?;
         if self.picture {
             let file = assets
                 .map(|folder| folder.join(PICTURE))
@@ -138,8 +127,44 @@ impl Subject {
         Ok((setup, what))
     }
 
+    /// Its shot, and what it is of.
+    pub(super) fn shot(
+        &self,
+        assets: Option<&Path>,
+        [width, height]: [u32; 2],
+        map: u32,
+    ) -> Result<(Shot, String), Failure> {
+        let overrides = [
+            format!("size=[{width},{height}]"),
+            format!("light.0.shadow_map={map}"),
+        ];
+        let overrides = overrides
+            .iter()
+            .map(|text| text.parse())
+            .collect::<Result<Vec<Override>, _>>()
+            .map_err(Failure::input)?;
+        let (shot, what) = match self.asset_in(assets) {
+            Some((folder, asset)) => {
+                let file = folder.join(format!("{}.toml", self.name));
+                (
+                    Shot::of_text(&file, asset.shot, &overrides),
+                    asset.file.to_owned(),
+                )
+            }
+            None => {
+                let shot = Shot::load(Path::new(self.stand_in), None, &overrides);
+                (shot, format!("{} in its place", self.stand_in))
+            }
+        };
+        Ok((shot.map_err(Failure::input)?, what))
+    }
+
     fn asset_in<'a>(&self, assets: Option<&'a Path>) -> Option<(&'a Path, Asset)> {
-        let (folder, asset) = (assets?, self.asset?);
+        let asset = self.asset?;
+        if asset.file.starts_with(BUILTIN) {
+            return Some((Path::new(""), asset));
+        }
+        let folder = assets?;
         folder.join(asset.file).is_file().then_some((folder, asset))
     }
 }

@@ -107,7 +107,9 @@ impl<'a> Job<'a> {
         let backend = self.backend()?;
         let mut sequence = Sequence::new(&self.shot, frames, &mut stages)?;
         let setup = sequence.at(first_wanted)?;
-        let mut session = Session::new(&setup, &backend, &self.layers, &mut stages)?;
+        let temporal = self.shot.temporal.as_ref();
+        let layers = &self.layers;
+        let mut session = Session::new(&setup, temporal, &backend, layers, &mut stages)?;
         drop(setup);
         let mut ev = None;
         let mut done = Vec::new();

@@ -92,13 +92,12 @@ impl<'a> DeviceStage<'a> {
         has_stable_maps: bool,
     ) -> Result<DeviceTechnique<'a>, Failure> {
         let view = self.effect.create_view(&self.gpu.device, self.setup.size);
+        let mut setup = Setup::clone(&self.setup);
+        setup.frame.technique = technique.clone();
         Ok(DeviceTechnique {
             stage: self,
-            occluders: self.world.occluders(&self.setup, technique, self.gpu)?,
-            frame: Frame {
-                technique: technique.clone(),
-                ..self.setup.frame.clone()
-            },
+            occluders: self.world.occluders(&setup, None, self.gpu)?,
+            frame: setup.frame,
             view: view.map_err(Failure::device)?,
             shadow_revision: has_stable_maps.then_some(0),
             timestamps: Timestamps::new(&self.gpu.device),
@@ -111,7 +110,7 @@ impl<'a> DeviceStage<'a> {
 
     /// One frame of the limit.
     pub(super) fn limit_frame(&self, timestamps: &mut Timestamps) -> Result<FrameTime, Failure> {
-        self.frame(timestamps, |encoder, timestamps| {
+        timed_frame(self.gpu, timestamps, |encoder, timestamps| {
             self.limit.record(encoder, timestamps.timer());
             Ok(())
         })
@@ -119,23 +118,6 @@ impl<'a> DeviceStage<'a> {
 
     pub(super) fn timestamps(&self) -> Timestamps {
         Timestamps::new(&self.gpu.device)
-    }
-
-    /// Times a frame from before it is prepared and recorded until the device is done.
-    fn frame(
-        &self,
-        timestamps: &mut Timestamps,
-        record: impl FnOnce(&mut CommandEncoder, &mut Timestamps) -> Result<(), Failure>,
-    ) -> Result<FrameTime, Failure> {
-        let start = Instant::now();
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        timestamps.begin(&mut encoder);
-        record(&mut encoder, timestamps)?;
-        let done = finish(self.gpu, encoder, timestamps);
-        self.gpu.errors.else_result(done)?;
-        let wall = start.elapsed().as_secs_f64() * 1e3;
-        let passes = timestamps.read(&self.gpu.device, &self.gpu.queue)?;
-        Ok(FrameTime { wall, passes })
     }
 }
 
@@ -149,7 +131,7 @@ impl DeviceTechnique<'_> {
             shadow_revision,
             timestamps,
         } = self;
-        stage.frame(timestamps, |encoder, timestamps| {
+        timed_frame(stage.gpu, timestamps, |encoder, timestamps| {
             let mut lights = stage.world.light_inputs(occluders.as_deref());
             for light in &mut lights {
                 light.shadow_revision = *shadow_revision;
@@ -184,8 +166,29 @@ impl DeviceTechnique<'_> {
     }
 }
 
+/// Times a frame from before it is prepared and recorded until the device is done.
+pub(super) fn timed_frame(
+    gpu: &Gpu,
+    timestamps: &mut Timestamps,
+    record: impl FnOnce(&mut CommandEncoder, &mut Timestamps) -> Result<(), Failure>,
+) -> Result<FrameTime, Failure> {
+    let start = Instant::now();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    timestamps.begin(&mut encoder);
+    record(&mut encoder, timestamps)?;
+    let done = finish(gpu, encoder, timestamps);
+    gpu.errors.else_result(done)?;
+    let wall = start.elapsed().as_secs_f64() * 1e3;
+    let passes = timestamps.read(&gpu.device, &gpu.queue)?;
+    Ok(FrameTime { wall, passes })
+}
+
 /// Submits the passes and waits for them and their timestamps.
-fn finish(gpu: &Gpu, mut encoder: CommandEncoder, timestamps: &Timestamps) -> Result<(), Failure> {
+pub(super) fn finish(
+    gpu: &Gpu,
+    mut encoder: CommandEncoder,
+    timestamps: &Timestamps,
+) -> Result<(), Failure> {
     timestamps.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     let waited = gpu.device.poll(PollType::wait_indefinitely());

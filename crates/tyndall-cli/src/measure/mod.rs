@@ -8,6 +8,7 @@
 mod device;
 mod equal;
 mod error;
+mod film;
 mod limit;
 mod stage;
 mod timing;
@@ -19,6 +20,7 @@ pub use equal::{
     EqualQuality, MAX_STEPS, Marches, ray_march, steps_in_time, time_of_steps, timed_marches,
 };
 pub use error::error_of;
+pub use film::{Film, TakeFrame};
 pub use stage::{Place, Stage, converged};
 pub use timing::{Budget, Spread, Timing, Timings};
 pub use tyndall::techniques::reference::Visibility;

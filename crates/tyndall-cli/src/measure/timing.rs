@@ -136,6 +136,15 @@ pub(super) struct FrameTime {
 }
 
 impl FrameTime {
+    /// Time of all passes, or of the wall clock where none were timed.
+    pub(super) fn total(&self) -> f64 {
+        if self.passes.is_empty() {
+            self.wall
+        } else {
+            self.gpu()
+        }
+    }
+
     fn gpu(&self) -> f64 {
         self.passes
             .iter()

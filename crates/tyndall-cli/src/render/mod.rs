@@ -12,6 +12,7 @@ use tyndall::{
     frame::{Camera, Medium},
     physics::medium::Optics,
     techniques::{Technique, reference},
+    temporal::{Reuse, ReuseMask, ReuseShow},
 };
 
 use crate::{
@@ -20,6 +21,7 @@ use crate::{
     picture::Picture,
     progress::Stages,
     setup::Setup,
+    shot::{Temporal, TemporalMask, TemporalShow},
 };
 
 /// What a backend rendered, and what that took.
@@ -44,7 +46,7 @@ pub fn render(
     layers: &[Layer],
     stages: &mut Stages,
 ) -> Result<Rendered, Failure> {
-    Session::new(setup, backend, layers, stages)?.render(setup, stages)
+    Session::new(setup, None, backend, layers, stages)?.render(setup, stages)
 }
 
 /// What renders frame after frame of a shot.
@@ -61,14 +63,23 @@ impl<'a> Session<'a> {
     /// As for [`render`].
     pub fn new(
         setup: &Setup,
+        temporal: Option<&Temporal>,
         backend: &'a Backend,
         layers: &'a [Layer],
         stages: &mut Stages,
     ) -> Result<Self, Failure> {
         let needs = Needs::of(layers, &setup.frame.technique);
         let pipeline = match backend {
-            Backend::Cpu => None,
-            Backend::Gpu(gpu) => Some(gpu::Pipeline::new(setup, gpu, needs, stages)?),
+            Backend::Cpu => {
+                if temporal.is_some() {
+                    eprintln!("note: the CPU computes every frame whole, whatever [temporal] says");
+                }
+                None
+            }
+            Backend::Gpu(gpu) => {
+                let reuse = temporal.map(reuse);
+                Some(gpu::Pipeline::new(setup, reuse, gpu, needs, stages)?)
+            }
         };
         Ok(Self {
             layers,
@@ -127,8 +138,25 @@ pub(crate) fn reads_shadow_maps(technique: &Technique) -> bool {
     )
 }
 
-fn reads_occluders(technique: &Technique) -> bool {
-    matches!(technique, Technique::Hybrid(_))
+/// Reuse as tyndall takes it.
+pub(crate) fn reuse(temporal: &Temporal) -> Reuse {
+    Reuse {
+        frames: temporal.reuse,
+        mask: match temporal.mask {
+            TemporalMask::Change => ReuseMask::Change,
+            TemporalMask::Geometry => ReuseMask::Geometry,
+        },
+        show: match temporal.show {
+            TemporalShow::Light => ReuseShow::Light,
+            TemporalShow::Mask => ReuseShow::Mask,
+            TemporalShow::Age => ReuseShow::Age,
+        },
+    }
+}
+
+fn reads_occluders(technique: &Technique, reuse: Option<&Reuse>) -> bool {
+    let mask = reuse.map(|reuse| reuse.mask);
+    matches!(technique, Technique::Hybrid(_)) || mask == Some(ReuseMask::Geometry)
 }
 
 /// Length of each pixel's view ray [m].

@@ -3,15 +3,40 @@
 use std::{fmt, str::FromStr};
 
 use super::{
-    error::{Location, ShotError},
+    error::{Location, ShotError, one_of},
     reader::{Field, Section},
+    tree::Value,
 };
 
 /// Reuse of earlier frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Temporal {
-    /// Frames that a value is reused for (>= 1).
-    pub reuse: u32,
+    /// Frames that a value is reused for (>= 1); `None`: any number.
+    pub reuse: Option<u32>,
+    /// How pixels are found that have to be computed again.
+    pub mask: TemporalMask,
+    /// What the in-scattered light of the picture shows.
+    pub show: TemporalShow,
+}
+
+/// How pixels are found that have to be computed again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TemporalMask {
+    /// From what changed in depth buffer and shadow maps.
+    Change,
+    /// From the shadow volumes of what moves.
+    Geometry,
+}
+
+/// What the in-scattered light of the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TemporalShow {
+    /// The light.
+    Light,
+    /// The pixels that were computed.
+    Mask,
+    /// How long ago each pixel was.
+    Age,
 }
 
 /// What moves, frame by frame.
@@ -107,6 +132,16 @@ impl fmt::Display for FrameRange {
 /// The most frames that `temporal.reuse` may span.
 const MAX_REUSE: u32 = 64;
 const DEFAULT_REUSE: u32 = 3;
+const UNLIMITED: &str = "unlimited";
+const MASKS: [(&str, TemporalMask); 2] = [
+    ("change", TemporalMask::Change),
+    ("geometry", TemporalMask::Geometry),
+];
+const SHOWS: [(&str, TemporalShow); 3] = [
+    ("light", TemporalShow::Light),
+    ("mask", TemporalShow::Mask),
+    ("age", TemporalShow::Age),
+];
 const DEFAULT_FPS: f32 = 30.0;
 const FRAMES: &str = "the first and the last frame as A..B, two whole numbers with A <= B";
 const TARGET: &str = "a node's name, camera, medium, or a light such as light.0";
@@ -114,10 +149,42 @@ const TARGET: &str = "a node's name, camera, medium, or a light such as light.0"
 /// Reads `[temporal]`.
 pub(super) fn read_temporal(field: &Field<'_>) -> Result<Temporal, ShotError> {
     let section = field.section()?;
-    section.only(&["reuse"])?;
+    section.only(&["reuse", "mask", "show"])?;
     Ok(Temporal {
-        reuse: section.whole_or("reuse", DEFAULT_REUSE, 1..=MAX_REUSE)?,
+        reuse: match section.get("reuse") {
+            Some(field) => read_reuse(&field)?,
+            None => Some(DEFAULT_REUSE),
+        },
+        mask: choice(&section, "mask", &MASKS)?,
+        show: choice(&section, "show", &SHOWS)?,
     })
+}
+
+fn read_reuse(field: &Field<'_>) -> Result<Option<u32>, ShotError> {
+    if matches!(field.value(), Value::Text(word) if word == UNLIMITED) {
+        return Ok(None);
+    }
+    let expected = format!("a whole number from 1 to {MAX_REUSE}, or \"{UNLIMITED}\"");
+    let number = field.whole(1..=MAX_REUSE);
+    number.map(Some).map_err(|_| field.unexpected(expected))
+}
+
+/// The value of a word; the first where the key is left out.
+fn choice<T: Copy>(
+    section: &Section<'_>,
+    key: &str,
+    choices: &[(&'static str, T)],
+) -> Result<T, ShotError> {
+    let Some(field) = section.get(key) else {
+        return Ok(choices[0].1);
+    };
+    let words: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
+    let expected = one_of(&words);
+    let found = field.text(&expected)?;
+    let choice = choices.iter().find(|(word, _)| *word == found);
+    choice
+        .map(|(_, value)| *value)
+        .ok_or_else(|| field.unexpected(expected))
 }
 
 /// Reads `[animation]`.

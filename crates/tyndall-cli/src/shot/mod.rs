@@ -23,7 +23,9 @@ use tyndall::{
     techniques::Technique,
 };
 
-pub use animation::{Animation, FrameRange, Move, MoveTarget, Temporal};
+pub use animation::{
+    Animation, FrameRange, Move, MoveTarget, Temporal, TemporalMask, TemporalShow,
+};
 pub(crate) use camera::SceneCameras;
 pub use camera::{CameraBase, CameraSpec};
 pub use error::{Location, Origin, Problem, ShotError};

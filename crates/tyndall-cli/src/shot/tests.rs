@@ -178,13 +178,25 @@ translate = [[0, 0, 0], [2, 0, 0]]
         .map(|c| c.phase)
         .collect();
     assert_eq!(phases, [Phase::Rayleigh, Phase::Isotropic]);
-    assert_eq!(shot.temporal, Some(Temporal { reuse: 3 }));
+    assert_eq!(
+        shot.temporal,
+        Some(Temporal {
+            reuse: Some(3),
+            mask: TemporalMask::Change,
+            show: TemporalShow::Light,
+        })
+    );
     assert_eq!(shot.animation.unwrap().moves[0].translate.len(), 2);
     for (from, to, message) in [
         (
             "reuse = 3",
             "reuse = 0",
-            "shot.toml:12: temporal.reuse: expected a whole number from 1 to 64, found 0",
+            "shot.toml:12: temporal.reuse: expected a whole number from 1 to 64, or \"unlimited\", found 0",
+        ),
+        (
+            "reuse = 3",
+            "mask = \"depth\"",
+            "shot.toml:12: temporal.mask: expected change or geometry, found \"depth\"",
         ),
         (
             "fps = 30",

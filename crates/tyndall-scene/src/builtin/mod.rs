@@ -7,6 +7,7 @@ mod church;
 mod forest;
 mod glass;
 mod hairball;
+mod moving;
 mod noise;
 mod slats;
 mod terrain;
@@ -63,6 +64,16 @@ pub const BUILTINS: &[Builtin] = &[
         name: "hairball",
         about: "a ball of thousands of thin tubes under a light panel: soft shadows",
         make: hairball::make,
+    },
+    Builtin {
+        name: "sponge",
+        about: "Menger's sponge on a floor: a thousand tunnels",
+        make: moving::sponge,
+    },
+    Builtin {
+        name: "crowd",
+        about: "a sponge and two dozen rings: much that can be moved",
+        make: moving::crowd,
     },
     Builtin {
         name: "empty",

@@ -67,7 +67,7 @@ pub(crate) struct LightScope<'a> {
     /// Which pixels the last pass writes, where 1; `None`: all.
     pub(crate) stencil: Option<wgpu::TextureView>,
     /// A picture of the view's size that the last pass reads at its own pixel, and that may change where neither depth nor
-    /// shadow map do; two half floats.
+    /// shadow map do; half floats at most.
     pub(crate) witness: Option<wgpu::TextureView>,
     /// What the frame's passes count.
     pub(crate) counts: &'a mut Vec<Count>,

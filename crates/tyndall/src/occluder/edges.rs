@@ -43,6 +43,19 @@ impl Edges {
     }
 }
 
+impl Edges {
+    /// Smallest and largest coordinates; zeros of nothing.
+    pub(super) fn bounds(&self) -> [[f32; 3]; 2] {
+        let first = self.corners.first().copied().unwrap_or_default();
+        self.corners.iter().fold([first; 2], |[least, most], p| {
+            [
+                [0, 1, 2].map(|k| least[k].min(p[k])),
+                [0, 1, 2].map(|k| most[k].max(p[k])),
+            ]
+        })
+    }
+}
+
 fn check(positions: &[[f32; 3]], indices: &[u32]) -> Result<(), OccluderError> {
     if !indices.len().is_multiple_of(3) {
         return Err(OccluderError::Indices {

@@ -11,6 +11,9 @@
 //! needed: an edge of one triangle, or of more than two, always has its wall. No shadow is missing from the boundary of
 //! any set of triangles (Wyman & Ramsey 2008 need closed meshes).
 //!
+//! Where there is a shadow map, pieces whose texels are all covered from nearer to the light are left out: their shadow is
+//! inside that of what covers them. Of a dragon lit from the side that leaves a fraction of its silhouettes.
+//!
 //! A mesh is welded and its edges are found once, when it is uploaded; silhouettes are found on the GPU, light by light.
 
 mod edges;
@@ -28,6 +31,8 @@ pub struct OccluderMesh {
     pub(crate) edges: wgpu::Buffer,
     pub(crate) triangle_count: u32,
     pub(crate) edge_count: u32,
+    /// Smallest and largest coordinates.
+    pub(crate) bounds: [[f32; 3]; 2],
 }
 
 /// A mesh somewhere in the world.
@@ -121,6 +126,7 @@ impl OccluderMesh {
             edges: upload("edges", bytemuck::cast_slice(&mesh.edges))?,
             triangle_count: mesh.triangles.len() as u32,
             edge_count: mesh.edges.len() as u32,
+            bounds: mesh.bounds(),
         })
     }
 

@@ -3,6 +3,21 @@
 @group(2) @binding(0) var<storage, read> occluder_places: array<mat4x4f>; // world (relative to the eye) from mesh
 @group(2) @binding(1) var<storage, read> occluder_corners: array<f32>;
 @group(2) @binding(2) var<storage, read> occluder_elements: array<u32>; // edges of four, or triangles of three corners
+@group(2) @binding(3) var<uniform> occluder_params: OccluderParams;
+
+// Places of one mesh that stand side by side.
+struct OccluderParams {
+    first_place: u32,
+    places: u32,
+    edges: u32,
+    triangles: u32,
+    least: vec3f, // the mesh's box, in its own space
+    walls: u32, // where they begin in the list
+    most: vec3f,
+    caps: u32,
+    arguments: u32, // of the walls' draw, in words; the caps' follow
+    columns: u32, // workgroups a row
+}
 
 const OCCLUDER_NONE: u32 = 0xffffffffu;
 // Relative error of a corner's place and of a difference of two of them.
@@ -43,14 +58,18 @@ fn occluder_project(p: vec4f) -> vec4f {
     return vec4f((on_plane - depth * camera.center) / camera.half_extent, 0.5 * depth, depth);
 }
 
-fn occluder_nothing() -> OccluderVertex {
-    return OccluderVertex(vec4f(0.0, 0.0, 0.0, 1.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0);
+// A wall's plane, and on which side the shadow lies.
+struct OccluderWall {
+    a: vec3f,
+    b: vec3f,
+    normal: vec3f,
+    side: f32,
+    slack: f32,
+    is_inside: bool, // of the union of its triangles' volumes
 }
 
-// The wall of an edge: a, b and their images at infinity.
-@vertex
-fn occluder_wall(@builtin(vertex_index) i: u32, @builtin(instance_index) place: u32) -> OccluderVertex {
-    let edge = 4u * (i / 6u);
+fn occluder_wall_of(index: u32, place: u32) -> OccluderWall {
+    let edge = 4u * index;
     let a = occluder_corner(occluder_elements[edge], place);
     let b = occluder_corner(occluder_elements[edge + 1u], place);
     let along = b - a;
@@ -60,31 +79,22 @@ fn occluder_wall(@builtin(vertex_index) i: u32, @builtin(instance_index) place: 
     // The sine of the angle between edge and light, and the rounding of what both are differences of, over it.
     let rounded = OCCLUDER_ROUNDING * (length(a) + length(b) + length(way));
     let slack = rounded * (length(along) + length(way)) / max(area, 1e-30);
-    var normal = across / max(area, 1e-30);
+    var wall = OccluderWall(a, b, across / max(area, 1e-30), OCCLUDER_EITHER, slack, false);
     let c = occluder_elements[edge + 2u];
     let d = occluder_elements[edge + 3u];
-    var side = OCCLUDER_EITHER;
     if c != OCCLUDER_NONE {
-        let inside = occluder_side(a, normal, slack, occluder_corner(c, place));
+        let inside = occluder_side(a, wall.normal, slack, occluder_corner(c, place));
         var other = inside;
         if d != OCCLUDER_NONE {
-            other = occluder_side(a, normal, slack, occluder_corner(d, place));
+            other = occluder_side(a, wall.normal, slack, occluder_corner(d, place));
         }
-        if inside * other < 0.0 {
-            return occluder_nothing();
-        }
+        wall.is_inside = inside * other < 0.0;
         if inside * other > 0.0 {
-            side = OCCLUDER_ENTERS;
-            normal *= inside;
+            wall.side = OCCLUDER_ENTERS;
+            wall.normal *= inside;
         }
     }
-    // a b A, b B A
-    let corner = i % 6u;
-    let is_a = corner == 0u || corner == 2u || corner == 5u;
-    let is_far = corner == 2u || corner >= 4u;
-    let point = select(b, a, is_a);
-    let place_of = select(vec4f(point, 1.0), vec4f(occluder_way(point), 0.0), is_far);
-    return OccluderVertex(occluder_project(place_of), a, normal, side, slack);
+    return wall;
 }
 
 // 1 or -1 where a point surely lies before or behind a plane, else 0.
@@ -95,38 +105,10 @@ fn occluder_side(anchor: vec3f, normal: vec3f, slack: f32, point: vec3f) -> f32 
     return select(0.0, sign(height), abs(height) > rounded);
 }
 
-fn occluder_triangle(i: u32, place: u32) -> array<vec3f, 3> {
-    let first = i - i % 3u;
+fn occluder_triangle(index: u32, place: u32) -> array<vec3f, 3> {
     return array<vec3f, 3>(
-        occluder_corner(occluder_elements[first], place),
-        occluder_corner(occluder_elements[first + 1u], place),
-        occluder_corner(occluder_elements[first + 2u], place),
+        occluder_corner(occluder_elements[3u * index], place),
+        occluder_corner(occluder_elements[3u * index + 1u], place),
+        occluder_corner(occluder_elements[3u * index + 2u], place),
     );
-}
-
-// The triangles themselves.
-@vertex
-fn occluder_cap(@builtin(vertex_index) i: u32, @builtin(instance_index) place: u32) -> OccluderVertex {
-    let p = occluder_triangle(i, place);
-    let across = cross(p[1] - p[0], p[2] - p[0]);
-    let area = length(across);
-    let longest = max(length(p[1] - p[0]), length(p[2] - p[0]));
-    let rounded = OCCLUDER_ROUNDING * (length(p[0]) + length(p[1]) + length(p[2]));
-    let slack = 2.0 * rounded * longest / max(area, 1e-30);
-    var normal = across / max(area, 1e-30);
-    let way = occluder_way(p[0]);
-    let inwards = dot(normal, way);
-    var side = OCCLUDER_EITHER;
-    if abs(inwards) > slack * length(way) {
-        side = OCCLUDER_ENTERS;
-        normal *= sign(inwards);
-    }
-    return OccluderVertex(occluder_project(vec4f(p[i % 3u], 1.0)), p[0], normal, side, slack);
-}
-
-// Their images at infinity, which rays reach that stay in the shadow.
-@vertex
-fn occluder_far_cap(@builtin(vertex_index) i: u32, @builtin(instance_index) place: u32) -> @builtin(position) vec4f {
-    let p = occluder_triangle(i, place);
-    return occluder_project(vec4f(occluder_way(p[i % 3u]), 0.0));
 }

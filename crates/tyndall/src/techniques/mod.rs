@@ -247,6 +247,7 @@ impl Technique {
             Self::ImperfectVoxelized(p) => {
                 imperfect_voxelized::gpu::check(p, limits, size, index, inputs)
             }
+            Self::Hybrid(_) => hybrid::gpu::check(limits, index, inputs),
             _ => Ok(()),
         }
     }

@@ -15,7 +15,7 @@ use crate::{
     },
     occluder::{
         Occluder,
-        gpu::{Places, VOLUME, VolumePrograms, draws, own},
+        gpu::{Names, VolumePrograms, Volumes, check_list},
     },
     validate::faces,
 };
@@ -109,13 +109,6 @@ impl Programs {
             written(5),
             layout::texels(6),
         ];
-        let touched = |label, vertex| {
-            let raster = Raster {
-                vertex,
-                ..Raster::full_screen(TOUCHED_FORMAT.into())
-            };
-            screen(label, &[VOLUME, TOUCHED], "touched", &own()).drawing(raster)
-        };
         Self {
             decide: compute(
                 "reuse decide",
@@ -130,11 +123,13 @@ impl Programs {
             stencil: screen("reuse stencil", &[REUSE, STENCIL], "stencil", &aged).for_all_lights(),
             sum: screen("reuse sum", &[SUM], "sum", &[layout::texels(0)]).for_all_lights(),
             show: screen("reuse show", &[REUSE, STENCIL, SHOW], "show", &show).for_all_lights(),
-            touched: VolumePrograms {
-                wall: touched("reuse walls", "occluder_wall"),
-                cap: touched("reuse caps", "occluder_cap"),
-                far_cap: touched("reuse far caps", "occluder_far_cap"),
-            },
+            touched: VolumePrograms::new(
+                device,
+                shared,
+                &Raster::full_screen(TOUCHED_FORMAT.into()),
+                TOUCHED,
+                ["touched", "touched"],
+            ),
         }
     }
 }
@@ -154,11 +149,17 @@ pub(crate) fn check(
             reason: "the mask is drawn from what moves",
         });
     }
+    if reuse.mask == ReuseMask::Geometry {
+        // What moved stands there twice.
+        let occluders = inputs.occluders.unwrap_or_default();
+        check_list(limits, index, &occluders.repeat(2))?;
+    }
     let texels = inputs.shadow_map.map_or(0, |map| {
         let size = map.texture().size();
         u64::from(size.width) * u64::from(size.height) * u64::from(faces(light))
     });
-    let needed = 4 * texels.max(u64::from(width) * u64::from(height));
+    // The witness takes two words a pixel, the map one a texel.
+    let needed = (4 * texels).max(8 * u64::from(width) * u64::from(height));
     let limit = limits.max_storage_buffer_binding_size;
     if needed > limit {
         return Err(PrepareError::Limit {
@@ -260,7 +261,7 @@ impl Buffers {
             map_seen: scope.storage("reuse shadow map", 4 * texels.max(1)),
             depth_seen: scope.storage("reuse depth", 4 * pixels),
             age: scope.storage("reuse age", 4 * pixels),
-            witness_seen: scope.storage("reuse witness", 4 * witnessed),
+            witness_seen: scope.storage("reuse witness", 8 * witnessed),
         }
     }
 }
@@ -313,7 +314,7 @@ pub(crate) fn wrap(
 ) -> Vec<Pass> {
     let last = passes.pop();
     if frame.reuse.mask == ReuseMask::Geometry {
-        passes.push(touch(frame.moved, programs, scope));
+        passes.extend(touch(frame.moved, programs, scope));
     }
     let buffers = Buffers::new(frame, scope);
     passes.push(find(&buffers, programs, scope));
@@ -327,19 +328,29 @@ pub(crate) fn wrap(
 }
 
 /// Draws what moved; the picture is the last pass's witness then.
-fn touch(moved: &[Placed], programs: &Programs, scope: &mut LightScope<'_>) -> Pass {
+fn touch(moved: &[Placed], programs: &Programs, scope: &mut LightScope<'_>) -> [Pass; 2] {
     let target = picture("reuse touched", TOUCHED_FORMAT, scope);
     let occluders: Vec<Occluder<'_>> = moved.iter().map(Placed::as_occluder).collect();
-    let places = Places::new("reuse places", &occluders, scope);
+    let volumes = Volumes::new(&NAMES, &occluders, scope);
     scope.witness = Some(target.clone());
-    Pass {
-        name: scope.pass_name("what moved"),
-        work: Work::Draw {
-            target,
-            draws: draws(&occluders, &places, &programs.touched, scope),
+    [
+        volumes.list("list what moved", &programs.touched, scope),
+        Pass {
+            name: scope.pass_name("what moved"),
+            work: Work::Draw {
+                target,
+                draws: volumes.draws(&programs.touched, scope),
+            },
         },
-    }
+    ]
 }
+
+const NAMES: Names = Names {
+    places: "reuse places",
+    params: "reuse occluders",
+    list: "reuse list",
+    arguments: "reuse arguments",
+};
 
 /// The dispatches that leave the pixels' ages.
 fn find(buffers: &Buffers, programs: &Programs, scope: &mut LightScope<'_>) -> Pass {

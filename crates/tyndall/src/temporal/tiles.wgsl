@@ -5,7 +5,7 @@
 @group(2) @binding(2) var<storage, read> tiles_blocks: array<vec2f>;
 @group(2) @binding(3) var<storage, read_write> tiles_depth: array<f32>;
 @group(2) @binding(4) var<storage, read_write> tiles_age: array<u32>; // frames since a pixel was computed
-@group(2) @binding(5) var<storage, read_write> tiles_seen: array<u32>; // the witness of the frame before
+@group(2) @binding(5) var<storage, read_write> tiles_seen: array<vec2u>; // the witness of the frame before
 @group(2) @binding(6) var tiles_witness: texture_2d<f32>;
 
 const TILES_SIDE: u32 = 8u;
@@ -67,8 +67,9 @@ fn tiles_pixel_changed(pixel: vec2u, place: u32, depth: f32) -> bool {
     var is_changed = bitcast<u32>(tiles_depth[place]) != bitcast<u32>(depth);
     tiles_depth[place] = depth;
     if reuse.has_witness == 1u {
-        let witness = pack2x16float(textureLoad(tiles_witness, pixel, 0).xy);
-        is_changed = is_changed || tiles_seen[place] != witness;
+        let seen = textureLoad(tiles_witness, pixel, 0);
+        let witness = vec2u(pack2x16float(seen.xy), pack2x16float(seen.zw));
+        is_changed = is_changed || any(tiles_seen[place] != witness);
         tiles_seen[place] = witness;
     }
     return is_changed;

@@ -6,7 +6,10 @@ mod lights;
 mod timestamps;
 mod world;
 
-use tyndall::{Count, CountValue, Effect, EffectOptions, EffectView, FrameInputs, OutputPrecision};
+use tyndall::{
+    Count, CountValue, Effect, EffectOptions, EffectView, FrameInputs, OutputPrecision,
+    temporal::Reuse,
+};
 use tyndall_scene::gpu::readback;
 use wgpu::{CommandEncoder, Device, Queue, Texture, TextureFormat};
 
@@ -24,6 +27,7 @@ pub(super) struct Pipeline<'a> {
     needs: Needs,
     world: World,
     effect: Effect,
+    reuse: Option<Reuse>,
     view: EffectView,
     color: ColorTarget,
     timestamps: Timestamps,
@@ -33,6 +37,7 @@ impl<'a> Pipeline<'a> {
     /// Uploads the setup's scene.
     pub(super) fn new(
         setup: &Setup,
+        reuse: Option<Reuse>,
         gpu: &'a Gpu,
         needs: Needs,
         stages: &mut Stages,
@@ -42,8 +47,11 @@ impl<'a> Pipeline<'a> {
             let world = World::new(setup, gpu, needs, format)?;
             let effect = new_effect(&gpu.device, format)?;
             let view = effect.create_view(&gpu.device, setup.size);
+            let mut view = view.map_err(Failure::device)?;
+            view.set_reuse(reuse);
             Ok(Self {
-                view: view.map_err(Failure::device)?,
+                view,
+                reuse,
                 color: ColorTarget::new(&gpu.device, setup.size, format),
                 timestamps: Timestamps::new(&gpu.device),
                 gpu,
@@ -123,7 +131,7 @@ impl<'a> Pipeline<'a> {
         encoder: &mut CommandEncoder,
     ) -> Result<(), Failure> {
         let world = &self.world;
-        let occluders = world.occluders(setup, &setup.frame.technique, self.gpu)?;
+        let occluders = world.occluders(setup, self.reuse.as_ref(), self.gpu)?;
         let inputs = FrameInputs {
             depth: world.g_buffer().depth_view(),
             lights: &world.light_inputs(occluders.as_deref()),

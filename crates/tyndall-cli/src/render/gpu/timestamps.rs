@@ -42,6 +42,11 @@ impl Timestamps {
         }))
     }
 
+    /// Of passes that nobody times.
+    pub(crate) fn none() -> Self {
+        Self(None)
+    }
+
     /// What the next passes are timed by.
     pub(crate) fn timer(&mut self) -> Option<&mut PassTimer> {
         self.0.as_mut().map(|timed| &mut timed.timer)

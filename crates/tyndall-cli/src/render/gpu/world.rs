@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use tyndall::{LightInputs, Occluder, gpu::PassTimer, techniques::Technique};
+use tyndall::{LightInputs, Occluder, gpu::PassTimer, temporal::Reuse};
 use tyndall_scene::gpu::{
     GBufferTargets, SceneOccluders, SceneRenderer,
     readback::{self, ReadbackError},
@@ -123,14 +123,14 @@ impl World {
         light_inputs(&self.lights, occluders)
     }
 
-    /// What blocks light, where it is in this setup; nothing for techniques that don't ask. Uploaded when first asked for.
+    /// What blocks light, where it is in this setup; nothing where nobody asks. Uploaded when first asked for.
     pub(crate) fn occluders(
         &self,
         setup: &Setup,
-        technique: &Technique,
+        reuse: Option<&Reuse>,
         gpu: &Gpu,
     ) -> Result<Option<Vec<Occluder<'_>>>, Failure> {
-        if !reads_occluders(technique) {
+        if !reads_occluders(&setup.frame.technique, reuse) {
             return Ok(None);
         }
         let uploaded = match self.occluders.get() {

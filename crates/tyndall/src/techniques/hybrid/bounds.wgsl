@@ -1,5 +1,6 @@
 // The nearest and the farthest piece of the shadow volumes' boundary along a pixel's ray, blended by the larger:
-// (1 - nearest / length, farthest / length); zero where there is none. Rounded outwards, for half floats that are cut off.
+// (1 - nearest / length, farthest / length, 1 where the ray may stay in a shadow for ever); zero where there is none.
+// Rounded outwards, for half floats that are cut off.
 
 const BOUNDS_ROUNDING: f32 = 1.0 + 1.0 / 512.0;
 
@@ -36,5 +37,5 @@ fn bounds_of_boundary(in: OccluderVertex) -> @location(0) vec4f {
 // What ends at infinity.
 @fragment
 fn bounds_of_far_cap() -> @location(0) vec4f {
-    return vec4f(0.0, BOUNDS_ROUNDING, 0.0, 0.0);
+    return vec4f(0.0, 0.0, 1.0, 0.0);
 }

@@ -4,14 +4,7 @@ const EYE_SIDE: u32 = 64u;
 // Relative to the triangle's size as the eye sees it.
 const EYE_ROUNDING: f32 = 1e-4;
 
-@group(2) @binding(3) var<storage, read_write> eye_in_shadow: atomic<u32>;
-@group(2) @binding(4) var<uniform> eye_params: EyeParams;
-
-struct EyeParams {
-    first_place: u32,
-    triangles: u32,
-    columns: u32, // workgroups a row
-}
+@group(2) @binding(4) var<storage, read_write> eye_in_shadow: atomic<u32>;
 
 @compute @workgroup_size(1)
 fn eye_clear() {
@@ -20,11 +13,11 @@ fn eye_clear() {
 
 @compute @workgroup_size(64)
 fn eye_triangle(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-    let triangle = (group.y * eye_params.columns + group.x) * EYE_SIDE + lane;
-    if triangle >= eye_params.triangles {
+    let triangle = (group.y * occluder_params.columns + group.x) * EYE_SIDE + lane;
+    if triangle >= occluder_params.triangles {
         return;
     }
-    let p = occluder_triangle(3u * triangle, eye_params.first_place + group.z);
+    let p = occluder_triangle(triangle, occluder_params.first_place + group.z);
     if eye_is_behind(p[0], p[1], p[2]) {
         atomicStore(&eye_in_shadow, 1u);
     }

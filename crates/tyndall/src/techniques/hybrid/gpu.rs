@@ -4,7 +4,8 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{Params, Show};
 use crate::{
-    effect::CountValue,
+    effect::{CountValue, LightInputs},
+    error::PrepareError,
     gpu::{
         layout,
         pass::{Pass, Vertices, Work},
@@ -14,7 +15,7 @@ use crate::{
     },
     occluder::{
         Occluder,
-        gpu::{Places, VOLUME, VolumePrograms, draws, own},
+        gpu::{Names, VOLUME, VolumePrograms, Volumes, check_list, own},
     },
 };
 
@@ -25,12 +26,7 @@ const EYE_BOUNDS: &str = include_str!("eye_bounds.wgsl");
 pub(crate) const HYBRID: &str = include_str!("hybrid.wgsl");
 
 /// Shares of the ray's length; every device blends this format.
-const BOUNDS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
-/// Triangles that a workgroup of `eye.wgsl` tests.
-const EYE_GROUP: u32 = 64;
-/// The most workgroups a row has.
-const EYE_COLUMNS: u32 = 32_768;
-
+const BOUNDS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// `HybridParams` of `hybrid.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -41,14 +37,20 @@ pub(crate) struct ParamsUniform {
     pad: u32,
 }
 
-/// `EyeParams` of `eye.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct EyeUniform {
-    first_place: u32,
-    triangles: u32,
-    columns: u32,
-    pad: u32,
+const NAMES: Names = Names {
+    places: "hybrid places",
+    params: "hybrid occluders",
+    list: "hybrid list",
+    arguments: "hybrid arguments",
+};
+
+/// Refuses lists of silhouettes that the device cannot bind.
+pub(crate) fn check(
+    limits: &wgpu::Limits,
+    index: usize,
+    inputs: &LightInputs<'_>,
+) -> Result<(), PrepareError> {
+    check_list(limits, index, inputs.occluders.unwrap_or_default())
 }
 
 /// The technique's shaders.
@@ -79,20 +81,8 @@ impl Programs {
             blend: Some(FARTHEST),
             write_mask: wgpu::ColorWrites::ALL,
         });
-        let boundary = |label, vertex, fragment| {
-            let raster = Raster {
-                vertex,
-                ..farthest.clone()
-            };
-            ScreenProgram::new(device, shared, label, &[VOLUME, BOUNDS], fragment, &own())
-                .drawing(raster)
-        };
         let eye_bounds_own = [layout::storage(0, true)];
-        let eye_own = [
-            &own()[..],
-            &[layout::storage(3, false), layout::uniform::<EyeUniform>(4)],
-        ]
-        .concat();
+        let eye_own = [&own()[..], &[layout::storage(4, false)]].concat();
         let eye = |entry_point| {
             let modules = [VOLUME, EYE];
             ComputeProgram::new(
@@ -111,11 +101,13 @@ impl Programs {
         ];
         let modules = [AIRLIGHT, STRETCH, MARCH, HYBRID];
         Self {
-            volumes: VolumePrograms {
-                wall: boundary("hybrid walls", "occluder_wall", "bounds_of_boundary"),
-                cap: boundary("hybrid caps", "occluder_cap", "bounds_of_boundary"),
-                far_cap: boundary("hybrid far caps", "occluder_far_cap", "bounds_of_far_cap"),
-            },
+            volumes: VolumePrograms::new(
+                device,
+                shared,
+                &farthest,
+                BOUNDS,
+                ["bounds_of_boundary", "bounds_of_far_cap"],
+            ),
             eye_clear: eye("eye_clear"),
             eye: eye("eye_triangle"),
             eye_bounds: ScreenProgram::new(
@@ -161,20 +153,21 @@ pub(crate) fn passes(
     if let Some(occluders) = occluders.filter(|occluders| !occluders.is_empty()) {
         count(occluders, scope);
         bounds = bounds_picture(scope);
-        let places = Places::new("hybrid places", occluders, scope);
+        let volumes = Volumes::new(&NAMES, occluders, scope);
         let eye = scope.storage("hybrid eye in shadow", 4);
-        passes.push(eye_pass(occluders, &places, &eye, programs, scope));
+        passes.push(eye_pass(&volumes, &eye, programs, scope));
+        passes.push(volumes.list("list silhouettes", &programs.volumes, scope));
         let whole = Vertices::Direct {
             vertices: 3,
             instances: 0..1,
         };
         let from_eye = scope.draw_mesh(&programs.eye_bounds, &[eye.as_entire_binding()], whole);
-        let volumes = draws(occluders, &places, &programs.volumes, scope);
+        let boundaries = volumes.draws(&programs.volumes, scope);
         passes.push(Pass {
             name: scope.pass_name("shadow volumes"),
             work: Work::Draw {
                 target: bounds.clone(),
-                draws: std::iter::once(from_eye).chain(volumes).collect(),
+                draws: std::iter::once(from_eye).chain(boundaries).collect(),
             },
         });
         scope.witness = Some(bounds.clone());
@@ -208,41 +201,20 @@ fn bounds_picture(scope: &mut LightScope<'_>) -> wgpu::TextureView {
 
 /// Asks whether the eye is in a shadow.
 fn eye_pass(
-    occluders: &[Occluder<'_>],
-    places: &Places,
+    volumes: &Volumes<'_>,
     eye: &wgpu::Buffer,
     programs: &Programs,
-    scope: &mut LightScope<'_>,
+    scope: &LightScope<'_>,
 ) -> Pass {
-    let uniforms: Vec<EyeUniform> = (0..)
-        .zip(occluders)
-        .map(|(first_place, occluder)| {
-            let triangles = occluder.mesh.triangles();
-            EyeUniform {
-                first_place,
-                triangles,
-                columns: triangles.div_ceil(EYE_GROUP).clamp(1, EYE_COLUMNS),
-                pad: 0,
-            }
-        })
-        .collect();
-    let blocks = scope.blocks("hybrid eye params", uniforms);
-    let dispatches = (0..).zip(occluders).map(|(i, occluder)| {
-        let EyeUniform {
-            triangles, columns, ..
-        } = blocks.values[i as usize];
-        let rows = triangles.div_ceil(EYE_GROUP).div_ceil(columns);
-        let resources = [
-            places.as_entire_binding(),
-            occluder.mesh.corners.as_entire_binding(),
-            occluder.mesh.triangles.as_entire_binding(),
-            eye.as_entire_binding(),
-            blocks.binding(i),
-        ];
-        let clear = (i == 0).then(|| scope.dispatch(&programs.eye_clear, &resources, [1; 3]));
-        let test = scope.dispatch(&programs.eye, &resources, [columns, rows, 1]);
-        clear.into_iter().chain([test])
-    });
-    let dispatches = dispatches.flatten().collect();
+    let mut dispatches = Vec::new();
+    for (run, mesh, _) in volumes.runs() {
+        let own = [eye.as_entire_binding()];
+        let resources = [&volumes.resources(run, &mesh.triangles)[..], &own].concat();
+        if run == 0 {
+            dispatches.push(scope.dispatch(&programs.eye_clear, &resources, [1; 3]));
+        }
+        let groups = volumes.workgroups(run, mesh.triangles());
+        dispatches.push(scope.dispatch(&programs.eye, &resources, groups));
+    }
     Pass::compute(scope.pass_name("eye in shadow"), dispatches)
 }

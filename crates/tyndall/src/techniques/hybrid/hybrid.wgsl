@@ -23,7 +23,7 @@ fn hybrid(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = frame_ray(position);
     let pixel = vec2u(position.xy);
     let left = dot(transmittance(frame.medium.sigma_t, ray.length), vec3f(1.0 / 3.0));
-    let shaded = hybrid_shaded(ray, textureLoad(hybrid_bounds, pixel, 0).xy);
+    let shaded = hybrid_shaded(ray, textureLoad(hybrid_bounds, pixel, 0).xyz);
     if hybrid_params.show != HYBRID_SHOW_LIGHT {
         return vec4f(vec3f(shaded.x, shaded.y, shaded.y - shaded.x), left);
     }
@@ -32,7 +32,7 @@ fn hybrid(@builtin(position) position: vec4f) -> @location(0) vec4f {
 }
 
 // The stretch [m] that holds every shadow on the ray; empty where x >= y.
-fn hybrid_shaded(ray: Ray, bounds: vec2f) -> vec2f {
+fn hybrid_shaded(ray: Ray, bounds: vec3f) -> vec2f {
     let whole = vec2f(0.0, ray.length);
     let is_flat = (frame.camera.flags & CAMERA_ORTHOGRAPHIC) != 0u;
     let runs_along = !light_is_local() && abs(dot(ray.direction, light.direction)) > HYBRID_PARALLEL;
@@ -42,13 +42,14 @@ fn hybrid_shaded(ray: Ray, bounds: vec2f) -> vec2f {
     if hybrid_params.bounds == HYBRID_UNKNOWN || (is_flat && runs_along) {
         return whole;
     }
-    if all(bounds == vec2f(0.0)) {
+    let may_start_shaded = is_flat && bounds.z > 0.0;
+    if all(bounds.xy == vec2f(0.0)) && !may_start_shaded {
         return vec2f(ray.length);
     }
     // A ray that leaves a shadow entered it, and one that enters and does not leave ends there. Rays that do not start in
     // the eye may start in a shadow.
     let front = select(saturate(1.0 - bounds.x), 0.0, is_flat || bounds.x == 0.0);
-    let back = select(min(bounds.y, 1.0), 1.0, bounds.y == 0.0);
+    let back = select(min(bounds.y, 1.0), 1.0, bounds.y == 0.0 || bounds.z > 0.0);
     return vec2f(front, back) * ray.length;
 }
 
