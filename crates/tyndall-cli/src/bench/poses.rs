@@ -296,7 +296,7 @@ fn epipole(case: usize, [x, y]: [f32; 2], yfov: f32) -> Vec3 {
     let [x, y] = places[number];
     let is_at_infinity = number + 1 == places.len();
     let depth = if is_at_infinity { 0.0 } else { -1.0 };
-    let ahead = if case / places.len() % 2 == 0 {
+    let ahead = if (case / places.len()).is_multiple_of(2) {
         1.0
     } else {
         -1.0
