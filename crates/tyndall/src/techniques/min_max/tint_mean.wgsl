@@ -2,7 +2,7 @@
 
 // Change in the light but for its picture over a block: optical depth, or angle at the light [rad].
 const TINT_BLOCK_DEPTH: f32 = 0.1;
-const TINT_BLOCK_ANGLE: f32 = 0.02;
+const TINT_BLOCK_ANGLE: f32 = 0.01;
 const TINT_MAX_BLOCKS: f32 = 256.0;
 
 fn tint_row_sum(e: Epipolar, slice: u32, term: u32, column: f32) -> vec3f {
