@@ -13,6 +13,7 @@ mod subject;
 mod table;
 #[cfg(test)]
 mod tests;
+mod wyman_dai;
 mod yusov;
 
 use std::{
@@ -40,6 +41,7 @@ enum Tables {
     LightVolumes(billeter::LightVolumes),
     Epipolar(yusov::Epipolar),
     Films(lin::Films),
+    AreaLights(wyman_dai::AreaLights),
     Scaling,
     Poses,
 }
@@ -73,14 +75,16 @@ const SUITES: [Suite; 7] = [
     },
     Suite {
         name: "wyman-dai",
-        about: "Wyman and Dai 2013, tables 1 and 2",
-        tables: Tables::Paper(Paper {
-            techniques: &["vsv", "ivsv"],
-            scenes: &[subject::DONUTS_RECT],
-            size: PICTURE,
-            reduction: paper::REDUCTION,
-            map: 128,
-            spot_maps: &[],
+        about: "Wyman and Dai 2013, tables 1 and 2: samples of an area light one by one and all at once",
+        tables: Tables::AreaLights(wyman_dai::AreaLights {
+            scenes: &[
+                subject::DONUTS_RECT,
+                subject::HAIRBALL,
+                subject::ANGEL_RECT,
+                subject::CITY_RECT,
+            ],
+            size: [320, 240],
+            samples: &[1, 4, 16, 64, 256],
         }),
     },
     Suite {
@@ -181,6 +185,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
             Tables::LightVolumes(suite) => billeter::run(suite, &bench, &mut stages)?,
             Tables::Epipolar(suite) => yusov::run(suite, &bench, &mut stages)?,
             Tables::Films(films) => lin::run(films, &bench, &mut stages)?,
+            Tables::AreaLights(suite) => wyman_dai::run(suite, &bench, &mut stages)?,
             Tables::Scaling => scaling::run(&bench, &mut stages)?,
             Tables::Poses => poses::run(poses::POSES, &bench, &mut stages)?,
         };

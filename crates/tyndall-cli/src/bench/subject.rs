@@ -99,6 +99,12 @@ pub(super) const DONUTS_RECT: Subject = subject(
 /// How files of scenes begin that are made by code.
 const BUILTIN: &str = "builtin:";
 
+pub(super) const HAIRBALL: Subject = subject("hairball", None, "builtin:hairball");
+pub(super) const ANGEL_RECT: Subject =
+    subject("angel", asset!("angel.glb", "angel-rect"), "builtin:slats");
+pub(super) const CITY_RECT: Subject =
+    subject("city", asset!("city.glb", "city-rect"), "builtin:church");
+
 /// The picture that SIBENIKTEX's light shines through, among the assets.
 const PICTURE: &str = "rose-window.png";
 
@@ -210,7 +216,7 @@ fn coloured_rings() -> LightTexture {
 }
 
 /// The scene's middle and the radius of the sphere round it [m].
-fn sphere(setup: &Setup) -> (Vec3, f32) {
+pub(super) fn sphere(setup: &Setup) -> (Vec3, f32) {
     let bounds = setup.tracer.geometry().bounds();
     let bounds = bounds.unwrap_or(Bounds {
         min: Vec3::NEG_ONE,

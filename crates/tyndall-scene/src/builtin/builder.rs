@@ -87,14 +87,6 @@ impl SceneBuilder {
         });
     }
 
-    /// A light in world space.
-    pub(super) fn light(&mut self, name: &str, emitter: Emitter) {
-        self.scene.nodes.push(Node {
-            light: Some(emitter),
-            ..place(name, Affine3A::IDENTITY)
-        });
-    }
-
     pub(super) fn finish(self) -> Scene {
         self.scene
     }

@@ -1,9 +1,8 @@
-//! A ball of thin tubes over a floor, under a light like a ceiling panel.
+//! A ball of thin tubes over a floor.
 
 use std::f32::consts::TAU;
 
 use glam::{Affine3A, Vec3, vec3};
-use tyndall::frame::Emitter;
 
 use super::{builder::SceneBuilder, noise::Random, triangles::Triangles};
 use crate::scene::Scene;
@@ -26,16 +25,7 @@ pub(super) fn make() -> Scene {
     let mesh = builder.mesh([(hair, hairs()), (stone, floor())]);
     builder.instance("hairball", mesh, Affine3A::IDENTITY);
     builder.camera(vec3(0.6, 1.7, 5.2), vec3(0.0, 1.2, 0.0), 45.0, [0.05, 16.0]);
-    builder.light(
-        "panel",
-        Emitter::Rect {
-            center: [-0.9, 3.6, -0.8],
-            edge_x: [1.8, 0.0, 0.0],
-            edge_y: [0.0, 0.3, 1.4],
-            radiance: [12.0, 11.0, 9.0],
-            samples: 256,
-        },
-    );
+    builder.sun(vec3(0.45, -0.8, 0.35), [10.0, 9.4, 8.2]);
     builder.finish()
 }
 

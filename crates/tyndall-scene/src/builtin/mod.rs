@@ -1,6 +1,6 @@
 //! Scenes made by code: nothing to download, the same triangles everywhere.
 //!
-//! Each has a camera and a light among its nodes, placed so that shafts of light are plain to see.
+//! Each has a camera and a sun among its nodes, placed so that shafts of light are plain to see.
 
 mod builder;
 mod church;
@@ -62,7 +62,7 @@ pub const BUILTINS: &[Builtin] = &[
     },
     Builtin {
         name: "hairball",
-        about: "a ball of thousands of thin tubes under a light panel: soft shadows",
+        about: "a ball of thousands of thin tubes over a floor",
         make: hairball::make,
     },
     Builtin {

@@ -104,12 +104,12 @@ pub struct TechniqueInfo {
 /// Every technique, in the order they are listed to people; the first is the default.
 pub const TABLE: &[TechniqueInfo] = &[
     min_max::INFO,
+    imperfect_voxelized::INFO,
     ray_march::INFO,
     epipolar_sampling::INFO,
     light_volume::INFO,
     hybrid::INFO,
     voxelized::INFO,
-    imperfect_voxelized::INFO,
     incremental::INFO,
     reference::INFO,
 ];

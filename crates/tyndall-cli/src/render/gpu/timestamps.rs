@@ -10,7 +10,7 @@ use wgpu::{Buffer, BufferUsages, CommandEncoder, Device, Queue};
 use crate::failure::Failure;
 
 /// More passes than this go untimed.
-const TIMED_PASSES: u32 = 256;
+const TIMED_PASSES: u32 = 2048;
 
 /// A timer of passes with the buffers its ticks are read through; does nothing where the device has no timestamps.
 pub(crate) struct Timestamps(Option<Timed>);
