@@ -31,7 +31,7 @@ pub(super) const PULL_PUSH: &str = include_str!("pull_push.wgsl");
 /// Points, or samples, that a workgroup takes.
 const THREADS: u32 = 64;
 /// Texels a side that a workgroup of `pull_push.wgsl` takes.
-const BLOCK: u32 = 16;
+const BLOCK: u32 = 32;
 /// From a sample's map to the next one's turn about the normal, in turns.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 

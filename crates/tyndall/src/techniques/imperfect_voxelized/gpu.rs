@@ -29,8 +29,8 @@ const PARAMS: &str = include_str!("params.wgsl");
 const GATHER: &str = include_str!("gather.wgsl");
 const RESOLVE: &str = include_str!("resolve.wgsl");
 
-/// Light rays that a workgroup takes.
-const THREADS: u32 = 64;
+/// Light rays that a workgroup of `rectify.wgsl` takes.
+const RAYS_A_WORKGROUP: u32 = 512;
 /// Pixels a side that a workgroup of `gather.wgsl` takes.
 const TILE: u32 = 8;
 
@@ -189,7 +189,7 @@ fn voxelize(
         buffers.light.maps.as_entire_binding(),
         buffers.voxels.as_entire_binding(),
     ];
-    let groups = [side / THREADS, side, count];
+    let groups = [side * side / RAYS_A_WORKGROUP, 1, count];
     let rectify = scope.dispatch(&programs.rectify, &resources, groups);
     [
         Pass::compute(scope.pass_name("voxelize"), vec![clear, rectify]),

@@ -71,7 +71,7 @@ pub struct Params {
 impl Params {
     const DEFAULT: Self = Self {
         resolution: 128,
-        points: 16_384,
+        points: 8192,
         gather: Gather::Full,
         weighting: Weighting::Airlight,
         batched: true,
