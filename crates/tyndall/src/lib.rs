@@ -16,11 +16,13 @@
 //!
 //! | name | what it is | lights | runs on |
 //! |---|---|---|---|
-//! | [`ray-march`](techniques::ray_march) | brute force: N steps a ray, each looked up in the shadow map | directional, point, spot | GPU, CPU |
+//! | [`ray-march`](techniques::ray_march) | brute force: N steps a ray, each looked up in the shadow map | directional, point, spot; rectangle on the GPU | GPU, CPU |
 //! | [`min-max`](techniques::min_max) | 1-D min-max mipmaps over epipolar slices, lit stretches in closed form | directional, point, spot | GPU, CPU |
 //! | [`light-volume`](techniques::light_volume) | the shadow map as a closed mesh, drawn additively with signed airlight | directional, point, spot, without textures | GPU |
 //! | [`epipolar`](techniques::epipolar_sampling) | few rays marched along epipolar lines with 1-D min/max trees, the rest interpolated | directional, point, spot | GPU |
 //! | [`hybrid`](techniques::hybrid) | silhouette shadow volumes bound the shadows: closed forms outside, steps between | directional, point, spot | GPU |
+//! | [`vsv`](techniques::voxelized) | voxelized shadow volumes: bits over epipolar space | directional, point, spot | GPU |
+//! | [`ivsv`](techniques::imperfect_voxelized) | imperfect voxelized shadow volumes: an area light as many coarse grids | rectangle | GPU |
 //! | [`incremental`](techniques::incremental) | partial sums over epipolar slices, rays in order of their angle | directional, point, without textures | CPU |
 //! | [`reference`](techniques::reference) | exact visibility and f64 quadrature to a stated tolerance | directional, point, spot, rectangle | CPU |
 //!
@@ -77,7 +79,7 @@
 //! - The medium takes nothing from directional light on its way; other lights are attenuated.
 //! - Visibility is as good as the shadow map; only the `reference` can trace the scene instead.
 //! - Light in-scattered behind coloured glass is not tinted by the glass on its way to the eye.
-//! - Rectangular lights are for the `reference` only.
+//! - Rectangular lights are for `ivsv`, `ray-march` on the GPU and the `reference`.
 //! - No WebGL: planned techniques need compute shaders.
 //!
 //! # Features
@@ -104,6 +106,7 @@ pub mod techniques;
 #[cfg(feature = "gpu")]
 pub mod temporal;
 mod validate;
+#[cfg(feature = "gpu")]
 mod voxels;
 
 #[cfg(feature = "gpu")]

@@ -2,6 +2,7 @@
 
 use std::{
     f32::consts::FRAC_PI_2,
+    ops::RangeInclusive,
     path::{Path, PathBuf},
 };
 
@@ -19,7 +20,7 @@ use super::{
 pub struct LightSpec {
     /// What shines.
     pub emitter: Emitter,
-    /// Texels of a side of its shadow map, or of a face of its cube map.
+    /// Texels of a side of its shadow map, of a face of its cube map, or of a map of each of a rectangle's samples.
     pub shadow_map: u32,
     /// The picture it shines through.
     pub texture: Option<TextureSpec>,
@@ -75,12 +76,20 @@ fn read(field: &Field<'_>, folder: &Path) -> Result<LightSpec, ShotError> {
     };
     Ok(LightSpec {
         emitter,
-        shadow_map: section.whole_or("shadow_map", default_map, 1..=MAX_MAP)?,
+        shadow_map: section.whole_or("shadow_map", default_map, map_range(&emitter))?,
         texture: section
             .get("texture")
             .map(|field| texture(&field, &emitter, folder))
             .transpose()?,
     })
+}
+
+/// Texels that a side of the light's shadow map, or of each of a rectangle's samples, may have.
+fn map_range(emitter: &Emitter) -> RangeInclusive<u32> {
+    match emitter {
+        Emitter::Rect { .. } => 16..=1024,
+        _ => 1..=MAX_MAP,
+    }
 }
 
 /// Refuses keys that are neither common to all lights nor in `own`.

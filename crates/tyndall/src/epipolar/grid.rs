@@ -52,6 +52,7 @@ pub(crate) struct EpipolarGrid {
     local: Option<f64>,
     /// Where view rays are measured from: the eye; orthographic and local: the light.
     origin: DVec3,
+    #[cfg(feature = "gpu")]
     eye: DVec3,
     /// A local light's position; unused for the sun.
     light: DVec3,
@@ -158,6 +159,7 @@ impl EpipolarGrid {
             } else {
                 camera.eye
             },
+            #[cfg(feature = "gpu")]
             eye: camera.eye,
             light,
             axis,

@@ -36,6 +36,14 @@ impl Value {
         .filter(|x| range.contains(x))
     }
 
+    /// Yes or no, if it is that.
+    pub(crate) fn bool(&self) -> Option<bool> {
+        match self {
+            Self::Bool(b) => Some(*b),
+            _ => None,
+        }
+    }
+
     /// What stands beside the word in the list.
     pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
         match self {

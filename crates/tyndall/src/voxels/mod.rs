@@ -10,9 +10,8 @@
 //! 2. scan: along the rows of a slice each voxel becomes the OR of itself and all before it, for a point is dark iff b >= S;
 //! 3. query: a view ray reads its row.
 
-#[cfg(feature = "gpu")]
 pub(crate) mod gpu;
-#[cfg(all(test, feature = "gpu"))]
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
-pub(crate) mod twin;
+mod twin;

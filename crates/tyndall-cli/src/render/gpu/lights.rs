@@ -1,5 +1,7 @@
 //! What belongs to each light on the GPU.
 
+use std::sync::Arc;
+
 use tyndall::{
     LightInputs, Occluder, PointCloud,
     frame::{Emitter, Light},
@@ -12,7 +14,7 @@ use wgpu::{Buffer, TextureView};
 use crate::{
     failure::Failure,
     render::{Gpu, Needs},
-    setup::Setup,
+    setup::{LazyTracer, Setup},
 };
 
 /// Points of the scene's surfaces that maps of a rectangular light are made of.
@@ -25,6 +27,8 @@ pub(super) struct LightTargets {
     texture: Option<TextureView>,
     /// Of a rectangular light: the scene's surfaces, and the texels a side of a sample's map.
     points: Option<(Buffer, u32)>,
+    /// The scene that the points are of.
+    drawn: Arc<LazyTracer>,
 }
 
 impl LightTargets {
@@ -54,17 +58,21 @@ impl LightTargets {
             .map(|texture| upload_light_texture(device, queue, texture))
             .transpose()
             .map_err(Failure::device)?;
-        let is_area = matches!(light.emitter, Emitter::Rect { .. });
-        let points = (is_area && needs.light_maps)
-            .then(|| setup.tracer.point_cloud(CLOUD))
-            .filter(|cloud| !cloud.is_empty())
-            .map(|cloud| (upload_point_cloud(device, &cloud), extra.map_size[0]));
         Ok(Self {
-            points,
+            points: points(setup, index, gpu, needs),
+            drawn: Arc::clone(&setup.tracer),
             shadow_map,
             glass,
             texture: texture.map(|texture| texture.create_view(&Default::default())),
         })
+    }
+
+    /// Takes new points where the scene has moved.
+    pub(super) fn follow(&mut self, setup: &Setup, index: usize, gpu: &Gpu, needs: Needs) {
+        if !Arc::ptr_eq(&self.drawn, &setup.tracer) {
+            self.points = points(setup, index, gpu, needs);
+            self.drawn = Arc::clone(&setup.tracer);
+        }
     }
 
     /// Whether there is a shadow map where the light needs one.
@@ -77,6 +85,14 @@ impl LightTargets {
             + self.glass.as_ref().map_or(0, GlassMapTarget::bytes)
             + self.points.as_ref().map_or(0, |(buffer, _)| buffer.size())
     }
+}
+
+/// The scene's surfaces, where the light is a rectangle.
+fn points(setup: &Setup, index: usize, gpu: &Gpu, needs: Needs) -> Option<(Buffer, u32)> {
+    let is_area = matches!(setup.frame.lights[index].emitter, Emitter::Rect { .. });
+    let cloud = (is_area && needs.light_maps).then(|| setup.tracer.point_cloud(CLOUD))?;
+    let side = setup.lights[index].map_size[0];
+    (!cloud.is_empty()).then(|| (upload_point_cloud(&gpu.device, &cloud), side))
 }
 
 /// The lights' pictures; `occluders` are the same for all of them.

@@ -155,7 +155,8 @@ impl AreaLight {
 }
 
 impl Maps {
-    /// Of so many samples: as many at once as the device binds, or one, where each takes `bytes` besides its map.
+    /// Of `points` points each, or half as many as texels where that is 0; as many at once as the device binds, up to
+    /// `at_once`, where each takes `bytes` besides its map.
     pub(crate) fn new(
         inputs: &LightInputs<'_>,
         points: u32,
@@ -164,8 +165,10 @@ impl Maps {
         limits: &wgpu::Limits,
     ) -> Self {
         let cloud = inputs.points.map_or(0, |cloud| cloud.points.size() / 16) as u32;
+        let side = inputs.points.map_or(0, |cloud| cloud.map_side);
+        let points = if points == 0 { side * side / 2 } else { points };
         let one = Self {
-            side: inputs.points.map_or(0, |cloud| cloud.map_side),
+            side,
             points: points.min(cloud),
             cloud,
             batch: 1,

@@ -12,16 +12,13 @@ const IVSV_ALIKE: f32 = 0.05;
 fn ivsv_resolve(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = frame_ray(position);
     let pixel = vec2u(position.xy);
-    let before = textureLoad(frame_lights_before, pixel, 0).rgb;
-    let left = transmittance(frame.medium.sigma_t, ray.length);
     var sum = ivsv_sums[min(pixel.y, ivsv.size.y - 1u) * ivsv.size.x + min(pixel.x, ivsv.size.x - 1u)];
     if ivsv.turns > 1u {
         sum = ivsv_of_window(pixel, ray.length);
     } else if ivsv.pitch > 1u {
         sum = ivsv_between(pixel, ray.length);
     }
-    let light = sum.rgb * (f32(imperfect_batch.total) / max(sum.a, 1e-20));
-    return vec4f(before + light, dot(left, vec3f(1.0 / 3.0)));
+    return frame_output(position, ray, sum.rgb * (f32(imperfect_batch.total) / max(sum.a, 1e-20)));
 }
 
 // How alike the ray of a pixel of the gathered picture is.

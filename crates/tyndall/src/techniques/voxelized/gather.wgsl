@@ -7,9 +7,7 @@
 @fragment
 fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = frame_ray(position);
-    let before = textureLoad(frame_lights_before, vec2u(position.xy), 0).rgb;
-    let left = transmittance(frame.medium.sigma_t, ray.length);
-    return vec4f(before + gather_light(ray), dot(left, vec3f(1.0 / 3.0)));
+    return frame_output(position, ray, gather_light(ray));
 }
 
 fn gather_light(ray: Ray) -> vec3f {

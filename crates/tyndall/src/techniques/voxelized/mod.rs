@@ -33,6 +33,15 @@
 //! scan write each word once or twice; then two rows a pixel. 1024 takes 128 MiB, as much as a device need bind at all.
 //! Devices that bind less refuse by name.
 //!
+//! Relative error before ray-traced truth at 512: a box before a lamp 0.0002, a dragon in a spot 0.0010, a city's streets
+//! 0.0006, mountains under a low sun 0.0012, a hall with a window grid 0.021 (of which its shadow map 0.006), a church with thin windows 0.075.
+//! Of random blocks in maps of 64 texels: 0.068 at most with 64, 0.015 with 256.
+//!
+//! # What was tried
+//!
+//! Comparing distances within 2 pixels of the axis in place of half a pixel: of pictures 48 pixels wide the largest error grew from
+//! 0.014 to 0.033. Larger pictures do not tell the two apart.
+//!
 //! # Where it fails
 //!
 //! Shadows move by up to half a voxel: borders have steps, which 512 leave small and 64 do not. An occluder seen under
@@ -43,8 +52,8 @@
 pub(crate) mod gpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, param},
 };
 
 /// The entry in the table.
@@ -82,25 +91,9 @@ impl Default for Params {
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
     const PARAMS: &'static [&'static [Param<Self>]] = &[&[
-        Param {
-            key: "resolution",
-            about: "slices, view rays and light rays, each",
-            range: "64, 128, 256, 512 or 1024",
-            get: |p| Value::Integer(p.resolution.into()),
-            set: |p, v| {
-                p.resolution = v.integer(64..=1024).filter(|n| n.is_power_of_two())?;
-                Some(())
-            },
-        },
-        Param {
-            key: "epipole_radius",
-            about: "rays this near to the axis compare distances [pixels]",
-            range: "a number from 0 to 100",
-            get: |p| Value::Real(p.epipole_radius),
-            set: |p, v| {
-                p.epipole_radius = v.real(0.0..=100.0)?;
-                Some(())
-            },
-        },
+        param!(whole resolution, 64..=1024, "slices, view rays and light rays, each",
+            "64, 128, 256, 512 or 1024", |n| n.is_power_of_two()),
+        param!(real epipole_radius, 0..=100,
+            "rays this near to the axis compare distances [pixels]"),
     ]];
 }
