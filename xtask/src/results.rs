@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Suites of `tyndall bench` whose tables are kept.
-const SUITES: [&str; 7] = ["chen", "wyman-dai", "yusov", "billeter", "wyman-dai", "lin", "scaling"];
+const SUITES: [&str; 6] = ["chen", "yusov", "billeter", "wyman-dai", "lin", "scaling"];
 
 /// Runs each suite and writes what it prints to `results/SUITE.txt`, which is left as it is where the suite fails.
 pub(crate) fn measure() -> anyhow::Result<()> {
