@@ -16,13 +16,20 @@ struct Run<'a> {
     gpu: &'a TestDevice,
     effect: &'a Effect,
     view: EffectView,
+    /// Of all shadow maps.
+    revision: Option<u64>,
 }
 
 impl<'a> Run<'a> {
     fn new(gpu: &'a TestDevice, effect: &'a Effect, reuse: Option<Reuse>) -> Self {
         let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
         view.set_reuse(reuse);
-        Self { gpu, effect, view }
+        Self {
+            gpu,
+            effect,
+            view,
+            revision: None,
+        }
     }
 
     fn prepare(&mut self, stage: &Stage, technique: &Technique) {
@@ -42,7 +49,12 @@ impl<'a> Run<'a> {
         };
         let uploaded = on::Uploaded::new(self.gpu, stage);
         let lights = uploaded.light_inputs();
-        let with_occluders = |light| LightInputs { occluders, ..light };
+        let shadow_revision = self.revision;
+        let with_occluders = |light| LightInputs {
+            occluders,
+            shadow_revision,
+            ..light
+        };
         let lights: Vec<LightInputs<'_>> = lights.into_iter().map(with_occluders).collect();
         let inputs = FrameInputs {
             depth: &uploaded.depth,
@@ -443,5 +455,44 @@ fn views_of_mask_and_age_show_what_was_computed() {
             .fold(0.0, f32::max);
         assert_eq!(oldest, frame as f32 / 32.0);
         stage.depth[0] *= 0.9;
+    }
+}
+
+/// What a map was made into for the frame before is there still when passes that would make it again are left out.
+#[test]
+fn revisions_and_reuse_go_together() {
+    let Some(gpu) = device_or_skip("revisions and reuse") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for technique in [technique("min-max", &[]), technique("light-volume", &[])] {
+        let mut stage = clear_stages().swap_remove(0);
+        let mut run = Run::new(gpu, &effect, Some(Reuse::default()));
+        // The map's revision, and whether map and depth change before the frame.
+        for (revision, map, depth) in [
+            (1, false, false),
+            (1, false, false),
+            (2, true, false),
+            (2, false, true),
+            (3, false, false),
+            (3, false, true),
+            (4, true, true),
+        ] {
+            if map {
+                let map = stage.lights[0].shadow_map.as_mut().expect("it has one");
+                scratch(&mut map.depth, map.size[0], 7 * revision as u32);
+            }
+            if depth {
+                scratch(&mut stage.depth, SIZE[0], 3 * revision as u32);
+            }
+            run.revision = Some(revision);
+            let kept = run.frame(&stage, &technique);
+            let fresh = Run::new(gpu, &effect, None).frame(&stage, &technique);
+            assert_same(
+                &kept,
+                &fresh,
+                &format!("{technique:?}, {revision}, {map}, {depth}"),
+            );
+        }
     }
 }

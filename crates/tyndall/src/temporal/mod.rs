@@ -28,6 +28,10 @@
 //! along lines across the whole picture, and `light-volume` merges cells of any size: there any stale pixel makes all of
 //! them stale.
 //!
+//! What these do before their last pass (slices, trees, samples) is done only where any pixel is stale or the shadow map is
+//! another one, by dispatches and draws whose sizes the GPU sets to zero; all but `hybrid`'s volumes, which the mask is
+//! made from.
+//!
 //! # Switching itself off
 //!
 //! Where the mask covered more than 70 % of the picture, the next 30 frames compute all pixels without asking; then one frame
@@ -38,6 +42,7 @@
 //! 4 bytes a shadow-map texel (what the frame before saw), 12 bytes a pixel and the light's kept picture; one read of map
 //! and depth. Lights through coloured glass are kept only while their maps' `shadow_revision` stays.
 
+mod gate;
 pub(crate) mod gpu;
 mod history;
 
