@@ -76,10 +76,10 @@ pub(super) fn gate(
     let open = [&own[..], &[sizes.as_entire_binding()]].concat();
     let open = scope.dispatch(&programs.open, &open, [1; 3]);
     let words: Vec<[u32; 4]> = gate.written.iter().map(|written| written.words).collect();
-    let words = scope.blocks("reuse gate words", &words);
+    let words = scope.blocks("reuse gate words", words);
     let pass_on = |index: usize| {
         let written = gate.written[index].buffer.as_entire_binding();
-        let resources = [&own[..], &[written, words.binding(index)]].concat();
+        let resources = [&own[..], &[written, words.binding(index as u32)]].concat();
         scope.dispatch(&programs.pass, &resources, [1; 3])
     };
     let mut gated = vec![Pass::compute(scope.pass_name("gate"), vec![open])];
