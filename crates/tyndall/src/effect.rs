@@ -85,7 +85,8 @@ pub struct LightInputs<'a> {
     /// shadow map's convention as the bits of an f32, and its tint as three 10-bit square roots (red lowest). Layers come
     /// nearest to the light first, empty ones last.
     pub glass: Option<&'a wgpu::TextureView>,
-    /// The light's texture: 2-D, filterable, linear when read.
+    /// The light's texture: 2-D, filterable, linear when read. Temporal reuse takes its content to stay while the view is
+    /// the same.
     pub texture: Option<&'a wgpu::TextureView>,
     /// All that may block this light, as triangles, for techniques that bound shadows by geometry (`hybrid`); `None`: not
     /// known.

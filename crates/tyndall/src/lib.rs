@@ -26,6 +26,8 @@
 //! | [`incremental`](techniques::incremental) | partial sums over epipolar slices, rays in order of their angle | directional, point, without textures | CPU |
 //! | [`reference`](techniques::reference) | exact visibility and f64 quadrature to a stated tolerance | directional, point, spot, rectangle | CPU |
 //!
+//! On the GPU, temporal reuse (`temporal`) goes about any of them: pixels that nothing has changed for are kept.
+//!
 //! # Quick start on the CPU
 //!
 //! ```

@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::{SIZE, Stage, crowd, gpu as on, noise, stages, steps, technique};
+use common::{SIZE, Stage, crowd, gpu as on, noise, stages, steps, svd, technique};
 use tyndall::{
-    CountValue, Effect, EffectView, FrameInputs,
+    CountValue, Effect, EffectView, FrameInputs, LightInputs, Occluder, OccluderMesh, PrepareError,
     frame::Frame,
     techniques::{Technique, Value},
-    temporal::Reuse,
+    temporal::{Reuse, ReuseMask, ReuseShow},
 };
 use tyndall_testkit::device::{TestDevice, device_or_skip};
 
@@ -16,36 +16,62 @@ struct Run<'a> {
     gpu: &'a TestDevice,
     effect: &'a Effect,
     view: EffectView,
+    /// Of all shadow maps.
+    revision: Option<u64>,
 }
 
 impl<'a> Run<'a> {
     fn new(gpu: &'a TestDevice, effect: &'a Effect, reuse: Option<Reuse>) -> Self {
         let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
         view.set_reuse(reuse);
-        Self { gpu, effect, view }
+        Self {
+            gpu,
+            effect,
+            view,
+            revision: None,
+        }
     }
 
     fn prepare(&mut self, stage: &Stage, technique: &Technique) {
+        self.prepare_with(stage, technique, None)
+            .expect("a good stage");
+    }
+
+    fn prepare_with(
+        &mut self,
+        stage: &Stage,
+        technique: &Technique,
+        occluders: Option<&[Occluder<'_>]>,
+    ) -> Result<(), PrepareError> {
         let frame = Frame {
             technique: technique.clone(),
             ..stage.frame.clone()
         };
         let uploaded = on::Uploaded::new(self.gpu, stage);
         let lights = uploaded.light_inputs();
+        let shadow_revision = self.revision;
+        let with_occluders = |light| LightInputs {
+            occluders,
+            shadow_revision,
+            ..light
+        };
+        let lights: Vec<LightInputs<'_>> = lights.into_iter().map(with_occluders).collect();
         let inputs = FrameInputs {
             depth: &uploaded.depth,
             lights: &lights,
         };
         let TestDevice { device, queue, .. } = self.gpu;
-        let prepared = self
-            .effect
-            .prepare(device, queue, &mut self.view, &inputs, &frame);
-        prepared.expect("a good stage");
+        self.effect
+            .prepare(device, queue, &mut self.view, &inputs, &frame)
     }
 
     /// The output, as bits.
     fn frame(&mut self, stage: &Stage, technique: &Technique) -> Vec<[u32; 4]> {
         self.prepare(stage, technique);
+        self.record()
+    }
+
+    fn record(&mut self) -> Vec<[u32; 4]> {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.effect.record(&mut encoder, &mut self.view, None);
         self.gpu.queue.submit([encoder.finish()]);
@@ -117,7 +143,7 @@ fn assert_same(kept: &[[u32; 4]], fresh: &[[u32; 4]], what: &str) {
     );
 }
 
-fn techniques() -> [Technique; 5] {
+fn techniques() -> [Technique; 6] {
     [
         technique("ray-march", &[steps(48)]),
         technique("min-max", &[]),
@@ -130,6 +156,7 @@ fn techniques() -> [Technique; 5] {
             ],
         ),
         technique("min-max", &[("slices", Value::Integer(16))]),
+        svd(4),
     ]
 }
 
@@ -153,6 +180,11 @@ fn kept_pixels_equal_computed_ones() {
         for (k, technique) in techniques().iter().enumerate() {
             // Every light meets every technique, with cameras in turn.
             if (i + i / 6 + k) % 6 != 0 {
+                continue;
+            }
+            let is_flat = stage.name.contains("orthographic");
+            if k == 5 && is_flat {
+                // Refused.
                 continue;
             }
             let mut stage = stage.clone();
@@ -337,4 +369,130 @@ fn reuse_is_limited_and_switches_itself_off() {
         .expect("asked again");
     assert!((20..32).contains(&first), "{quiet:?}");
     assert!(quiet[first..].iter().all(|stale| *stale == 0), "{quiet:?}");
+}
+
+/// The thesis's mask: what moved and its shadow volumes, where they were and where they are.
+#[test]
+fn moving_occluders_are_drawn_twice() {
+    let Some(gpu) = device_or_skip("the geometry's mask") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    let march = technique("ray-march", &[steps(8)]);
+    let corners = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.5, 0.2]];
+    let mesh = OccluderMesh::new(&gpu.device, &corners, &[0, 1, 2]).expect("a good mesh");
+    let at = |x: f32| Occluder {
+        mesh: &mesh,
+        world_from_mesh: [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [x, 0.5, 1.0, 1.0],
+        ],
+    };
+    let geometry = Reuse {
+        mask: ReuseMask::Geometry,
+        ..Reuse::default()
+    };
+    let plain = clear_stages()
+        .into_iter()
+        .filter(|stage| stage.lights[0].texture.is_none());
+    for stage in plain.step_by(8) {
+        let mut run = Run::new(gpu, &effect, Some(geometry));
+        let refused = run
+            .prepare_with(&stage, &march, None)
+            .expect_err("no occluders");
+        let expected = "`inputs.lights[0].occluders` is missing: the mask is drawn from what moves";
+        assert_eq!(refused.to_string(), expected);
+        let mut stale = |places: &[f32]| {
+            let occluders: Vec<Occluder<'_>> = places.iter().map(|x| at(*x)).collect();
+            run.prepare_with(&stage, &march, Some(&occluders))
+                .expect("a good stage");
+            run.record();
+            run.stale()[0]
+        };
+        assert_eq!(stale(&[0.0, 1.0]), PIXELS, "{}", stage.name);
+        assert_eq!(stale(&[0.0, 1.0]), 0, "{}", stage.name);
+        let [near, far, both] = [&[0.1, 1.0][..], &[0.1, -2.0], &[0.3, -1.0]].map(&mut stale);
+        assert!(near > 0 && near < PIXELS / 2, "{}: {near}", stage.name);
+        assert!(
+            far > 0 && both > far / 2 && both < PIXELS,
+            "{}: {far} {both}",
+            stage.name
+        );
+        // One that vanishes was somewhere.
+        assert!(stale(&[0.3]) > 0, "{}", stage.name);
+        assert_eq!(stale(&[0.3]), 0, "{}", stage.name);
+    }
+}
+
+#[test]
+fn views_of_mask_and_age_show_what_was_computed() {
+    let Some(gpu) = device_or_skip("views of temporal reuse") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    let march = technique("ray-march", &[steps(8)]);
+    let mut stage = clear_stages().swap_remove(0);
+    let mut runs = [ReuseShow::Mask, ReuseShow::Age].map(|show| {
+        let shown = Reuse {
+            show,
+            ..Reuse::default()
+        };
+        Run::new(gpu, &effect, Some(shown))
+    });
+    for frame in 0..3 {
+        let [mask, age] = runs.each_mut().map(|run| run.frame(&stage, &march));
+        let computed = |pixel: &&[u32; 4]| f32::from_bits(pixel[0]) == 1.0;
+        let stale = runs[0].stale()[0] as usize;
+        assert_eq!(mask.iter().filter(computed).count(), stale, "{frame}");
+        let now = |pixel: &&[u32; 4]| f32::from_bits(pixel[2]) == 1.0;
+        assert_eq!(age.iter().filter(now).count(), stale, "{frame}");
+        // Kept pixels are a thirty-second redder each frame.
+        let oldest = age
+            .iter()
+            .map(|pixel| f32::from_bits(pixel[0]))
+            .fold(0.0, f32::max);
+        assert_eq!(oldest, frame as f32 / 32.0);
+        stage.depth[0] *= 0.9;
+    }
+}
+
+/// What a map was made into for the frame before is there still when passes that would make it again are left out.
+#[test]
+fn revisions_and_reuse_go_together() {
+    let Some(gpu) = device_or_skip("revisions and reuse") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    for technique in [technique("min-max", &[]), technique("light-volume", &[])] {
+        let mut stage = clear_stages().swap_remove(0);
+        let mut run = Run::new(gpu, &effect, Some(Reuse::default()));
+        // The map's revision, and whether map and depth change before the frame.
+        for (revision, map, depth) in [
+            (1, false, false),
+            (1, false, false),
+            (2, true, false),
+            (2, false, true),
+            (3, false, false),
+            (3, false, true),
+            (4, true, true),
+        ] {
+            if map {
+                let map = stage.lights[0].shadow_map.as_mut().expect("it has one");
+                scratch(&mut map.depth, map.size[0], 7 * revision as u32);
+            }
+            if depth {
+                scratch(&mut stage.depth, SIZE[0], 3 * revision as u32);
+            }
+            run.revision = Some(revision);
+            let kept = run.frame(&stage, &technique);
+            let fresh = Run::new(gpu, &effect, None).frame(&stage, &technique);
+            assert_same(
+                &kept,
+                &fresh,
+                &format!("{technique:?}, {revision}, {map}, {depth}"),
+            );
+        }
+    }
 }

@@ -122,7 +122,7 @@ const SUITES: [Suite; 7] = [
             scenes: lin::SCENES,
             size: [640, 480],
             map: 1024,
-            timed: 24,
+            timed: 12,
             compared_size: [320, 240],
             compared: 60,
         }),

@@ -147,3 +147,33 @@ fn light_volumes_are_measured_by_mesh_and_map() {
         assert!(row["relMAE"].as_f64().unwrap() < 0.02, "{row:#}");
     }
 }
+
+#[test]
+fn reuse_is_timed_and_what_is_left_stale_is_counted() {
+    let backend = Backend::choose(BackendChoice::Auto, Technique::default().info()).unwrap();
+    let is_gpu = matches!(backend, Backend::Gpu(_));
+    let films = lin::Films {
+        scenes: &[(subject::YEAH_RIGHT, "1.10")],
+        size: [64, 48],
+        map: 64,
+        timed: 2,
+        compared_size: [48, 36],
+        compared: 3,
+    };
+    let report = lin::run(&films, &bench(backend), &mut Stages::default()).unwrap();
+    if !is_gpu {
+        return;
+    }
+    let json: Vec<Value> = report.tables.iter().map(Table::to_json).collect();
+    let [times, left] = &json[..] else {
+        panic!("expected two tables, found {json:#?}");
+    };
+    let row = &times["rows"][0];
+    assert_eq!(row["of"], "builtin:sponge");
+    assert!(row["speed-up"].as_f64().unwrap() > 0.0, "{row:#}");
+    let covered = row["change: covered"].as_f64().unwrap();
+    assert!(covered > 0.0 && covered <= 1.0, "{row:#}");
+    let left = left["rows"].as_array().unwrap();
+    assert_eq!(left[0]["mask"], "change");
+    assert_eq!(left[0]["stale pixels"], 0, "{left:#?}");
+}

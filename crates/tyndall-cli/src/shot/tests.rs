@@ -445,7 +445,7 @@ fn every_mistake_names_line_key_expected_and_found() {
         (
             "steps = 77",
             "step = 77",
-            "shot.toml:30: technique.step: no such key: expected steps or spacing; did you mean `steps`?",
+            "shot.toml:30: technique.step: no such key: expected steps, spacing or points; did you mean `steps`?",
         ),
         (
             "steps = 77",

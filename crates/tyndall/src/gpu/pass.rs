@@ -55,6 +55,9 @@ pub(crate) struct FullScreen {
     pub(crate) target: wgpu::TextureView,
     /// Where there is one, the target keeps its content, and is drawn on only where this is 1.
     pub(crate) stencil: Option<wgpu::TextureView>,
+    /// Where there is one, what stands in this buffer at this offset [bytes] is drawn, 3 vertices or none, and the target
+    /// keeps its content.
+    pub(crate) gate: Option<(wgpu::Buffer, u64)>,
 }
 
 /// One draw.
@@ -148,7 +151,7 @@ impl Pass {
             }
             Work::Draw { target, draws } => {
                 let stamps = timer.and_then(|t| t.render_pass(&self.name));
-                let mut pass = begin(&self.name, encoder, target, None, stamps);
+                let mut pass = begin(&self.name, encoder, target, Onto::Cleared, stamps);
                 for draw in draws {
                     set(&mut pass, &draw.pipeline, &draw.groups);
                     match &draw.vertices {
@@ -175,12 +178,22 @@ fn stencil_attachment(
     }
 }
 
-/// A render pass onto a cleared picture, or, where there is a stencil, onto what is there.
+/// What a render pass draws on.
+#[derive(Clone, Copy)]
+enum Onto<'a> {
+    /// A cleared picture.
+    Cleared,
+    /// What is there.
+    Kept,
+    /// What is there, through a stencil.
+    Stencilled(&'a wgpu::TextureView),
+}
+
 fn begin<'e>(
     name: &str,
     encoder: &'e mut wgpu::CommandEncoder,
     target: &wgpu::TextureView,
-    stencil: Option<&wgpu::TextureView>,
+    onto: Onto<'_>,
     timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -190,14 +203,17 @@ fn begin<'e>(
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations {
-                load: match stencil {
-                    None => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    Some(_) => wgpu::LoadOp::Load,
+                load: match onto {
+                    Onto::Cleared => wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    Onto::Kept | Onto::Stencilled(_) => wgpu::LoadOp::Load,
                 },
                 store: wgpu::StoreOp::Store,
             },
         })],
-        depth_stencil_attachment: stencil.map(|stencil| stencil_attachment(stencil, None)),
+        depth_stencil_attachment: match onto {
+            Onto::Stencilled(stencil) => Some(stencil_attachment(stencil, None)),
+            Onto::Cleared | Onto::Kept => None,
+        },
         timestamp_writes,
         ..Default::default()
     })
@@ -221,10 +237,17 @@ impl FullScreen {
         encoder: &mut wgpu::CommandEncoder,
         timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
-        let stencil = self.stencil.as_ref();
-        let mut pass = begin(name, encoder, &self.target, stencil, timestamp_writes);
+        let onto = match (&self.stencil, &self.gate) {
+            (Some(stencil), _) => Onto::Stencilled(stencil),
+            (None, Some(_)) => Onto::Kept,
+            (None, None) => Onto::Cleared,
+        };
+        let mut pass = begin(name, encoder, &self.target, onto, timestamp_writes);
         set(&mut pass, &self.pipeline, &self.groups);
         pass.set_stencil_reference(1);
-        pass.draw(0..3, 0..1);
+        match &self.gate {
+            None => pass.draw(0..3, 0..1),
+            Some((buffer, offset)) => pass.draw_indirect(buffer, *offset),
+        }
     }
 }

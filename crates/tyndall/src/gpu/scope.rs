@@ -245,6 +245,7 @@ impl LightScope<'_> {
             groups: self.groups(program.bind(self.device, resources)),
             target: self.target.clone(),
             stencil: self.stencil.clone(),
+            gate: None,
         };
         Pass {
             name: self.pass_name(name),
@@ -264,6 +265,7 @@ impl LightScope<'_> {
             groups: self.groups(program.bind(self.device, resources)),
             target,
             stencil: None,
+            gate: None,
         }
     }
 

@@ -2,7 +2,11 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Reach, Reuse, ReuseMask, ReuseShow, history::Placed};
+use super::{
+    Reach, Reuse, ReuseMask, ReuseShow,
+    gate::{self, gate},
+    history::Placed,
+};
 use crate::{
     effect::{CountValue, LightInputs},
     error::PrepareError,
@@ -20,9 +24,9 @@ use crate::{
     validate::faces,
 };
 
-const REUSE: &str = include_str!("reuse.wgsl");
+pub(super) const REUSE: &str = include_str!("reuse.wgsl");
 const DECIDE: &str = include_str!("decide.wgsl");
-const BLOCKS: &str = include_str!("blocks.wgsl");
+pub(super) const BLOCKS: &str = include_str!("blocks.wgsl");
 const CHANGE: &str = include_str!("change.wgsl");
 const TILES: &str = include_str!("tiles.wgsl");
 const STENCIL: &str = include_str!("stencil.wgsl");
@@ -67,6 +71,7 @@ pub(crate) struct Programs {
     sum: ScreenProgram,
     show: ScreenProgram,
     touched: VolumePrograms,
+    gate: gate::Programs,
 }
 
 impl Programs {
@@ -130,6 +135,7 @@ impl Programs {
                 TOUCHED,
                 ["touched", "touched"],
             ),
+            gate: gate::Programs::new(device, shared, params),
         }
     }
 }
@@ -211,11 +217,11 @@ fn picture(
 }
 
 /// Buffers of one light.
-struct Buffers {
-    params: wgpu::Buffer,
-    state: wgpu::Buffer,
+pub(super) struct Buffers {
+    pub(super) params: wgpu::Buffer,
+    pub(super) state: wgpu::Buffer,
     dispatches: wgpu::Buffer,
-    blocks: wgpu::Buffer,
+    pub(super) blocks: wgpu::Buffer,
     map_seen: wgpu::Buffer,
     depth_seen: wgpu::Buffer,
     age: wgpu::Buffer,
@@ -305,19 +311,28 @@ fn params(
     }
 }
 
-/// A light's passes with those that find what is stale before the last one.
+/// A light's passes with those that find what is stale before the last one. Where the mask doesn't depend on the passes
+/// before the last one, it comes first, and they do nothing where nothing is stale.
 pub(crate) fn wrap(
-    mut passes: Vec<Pass>,
+    mut own: Vec<Pass>,
     frame: &Frame<'_>,
     programs: &Programs,
     scope: &mut LightScope<'_>,
 ) -> Vec<Pass> {
-    let last = passes.pop();
+    let last = own.pop();
+    let is_witnessed = scope.witness.is_some();
+    let mut passes = Vec::new();
+    if is_witnessed {
+        passes.append(&mut own);
+    }
     if frame.reuse.mask == ReuseMask::Geometry {
         passes.extend(touch(frame.moved, programs, scope));
     }
     let buffers = Buffers::new(frame, scope);
     passes.push(find(&buffers, programs, scope));
+    if !own.is_empty() {
+        passes.extend(gate(own, &buffers, &programs.gate, scope));
+    }
     if let Some(stencil) = scope.stencil.clone() {
         passes.push(mark(&buffers, stencil, programs, scope));
     }

@@ -11,7 +11,7 @@
 //! - **change** (default): needs no geometry. The shadow map and the depth buffer are compared with those of the frame
 //!   before. A pixel is stale where its depth changed, or where its ray passes a shadow-map texel whose visibility changed,
 //!   at a depth between the old and the new one. The texels' depth ranges are kept in a pyramid of blocks of 8 x 8; the beam
-//!   of a tile of 8 x 8 pixels is held against it in 64 slabs. All is rounded outwards: **a kept pixel is bit by bit what
+//!   of a tile of 8 x 8 pixels is held against it in 128 slabs. All is rounded outwards: **a kept pixel is bit by bit what
 //!   computing it again would give**, for any number of frames.
 //! - **geometry**: the thesis's own. Moving occluders ([`LightInputs::occluders`](crate::LightInputs)) and their shadow
 //!   volumes are drawn where they were in the frame before and where they are now. Pixels may be lost: those whose shadows
@@ -28,6 +28,10 @@
 //! along lines across the whole picture, and `light-volume` merges cells of any size: there any stale pixel makes all of
 //! them stale.
 //!
+//! What these do before their last pass (slices, trees, samples) is done only where any pixel is stale or the shadow map is
+//! another one, by dispatches and draws whose sizes the GPU sets to zero; all but `hybrid`'s volumes, which the mask is
+//! made from.
+//!
 //! # Switching itself off
 //!
 //! Where the mask covered more than 70 % of the picture, the next 30 frames compute all pixels without asking; then one frame
@@ -38,6 +42,7 @@
 //! 4 bytes a shadow-map texel (what the frame before saw), 12 bytes a pixel and the light's kept picture; one read of map
 //! and depth. Lights through coloured glass are kept only while their maps' `shadow_revision` stays.
 
+mod gate;
 pub(crate) mod gpu;
 mod history;
 

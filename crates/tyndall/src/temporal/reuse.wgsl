@@ -28,6 +28,15 @@ struct ReuseState {
     rest: u32, // frames that the mask is not asked for
 }
 
+// The same once nothing of it is written any more.
+struct ReuseSettled {
+    generation: u32,
+    kept: u32,
+    stale: u32,
+    mode: u32,
+    rest: u32,
+}
+
 // This frame computes all pixels and looks at nothing, computes all and remembers what they were computed from, or
 // computes those that the mask covers.
 const REUSE_OFF: u32 = 0u;

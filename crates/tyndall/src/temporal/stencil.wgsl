@@ -1,16 +1,7 @@
 // Marks the pixels that this frame computes, for the stencil test of a technique's last pass.
 
-@group(2) @binding(1) var<storage, read> stencil_state: StencilState;
+@group(2) @binding(1) var<storage, read> stencil_state: ReuseSettled;
 @group(2) @binding(2) var<storage, read> stencil_age: array<u32>;
-
-// ReuseState, of which nothing is written any more.
-struct StencilState {
-    generation: u32,
-    kept: u32,
-    stale: u32,
-    mode: u32,
-    rest: u32,
-}
 
 @fragment
 fn stencil(@builtin(position) position: vec4f) {

@@ -1,4 +1,4 @@
-// Which pixels are stale. A tile of 8 x 8 pixels is asked as one: 64 slabs of the beam that its rays fill, each by one
+// Which pixels are stale. A tile of 8 x 8 pixels is asked as one: 128 slabs of the beam that its rays fill, two by each
 // invocation, are held against the blocks of the shadow map that changed. Depth is compared pixel by pixel.
 
 @group(2) @binding(1) var<storage, read_write> tiles_state: ReuseState;
@@ -9,7 +9,9 @@
 @group(2) @binding(6) var tiles_witness: texture_2d<f32>;
 
 const TILES_SIDE: u32 = 8u;
-const TILES_SLABS: f32 = 64.0;
+const TILES_SLABS: f32 = 128.0;
+// Blocks a side that a slab is held against at most, less one.
+const TILES_SPAN: u32 = 3u;
 // Rounding of places on the map [texels] and of depths, absolute and relative.
 const TILES_TEXELS: f32 = 1.0;
 const TILES_DEPTH: vec2f = vec2f(2e-6, 1e-5);
@@ -37,9 +39,12 @@ fn tiles(
     // Once a slab meets a change, the whole tile is stale.
     if reuse.mask == REUSE_CHANGE && reuse.faces > 0u {
         let farthest = bitcast<f32>(atomicLoad(&tiles_farthest));
-        let slab = farthest * vec2f(f32(lane), f32(lane) + 1.0) / TILES_SLABS;
-        if tiles_slab_changed(vec2f(TILES_SIDE * tile.xy), slab) {
-            atomicStore(&tiles_touched, 1u);
+        for (var half = 0u; half < 2u; half++) {
+            let first = f32(2u * lane + half);
+            let slab = farthest * vec2f(first, first + 1.0) / TILES_SLABS;
+            if tiles_slab_changed(vec2f(TILES_SIDE * tile.xy), slab) {
+                atomicStore(&tiles_touched, 1u);
+            }
         }
     }
     workgroupBarrier();
@@ -158,16 +163,19 @@ fn tiles_face_changed(points: array<vec3f, 8>, face: u32) -> bool {
 fn tiles_blocks_changed(first: vec2u, last: vec2u, depths: vec2f, face: u32) -> bool {
     let blocks = vec4u(first, last) / BLOCKS_SIDE;
     let span = max(blocks.z - blocks.x, blocks.w - blocks.y);
-    // The level at which four blocks hold them.
-    let level = min(select(firstLeadingBit(span - 1u) + 1u, 0u, span <= 1u), reuse.levels - 1u);
+    var level = 0u;
+    while (span >> level) >= TILES_SPAN && level + 1u < reuse.levels {
+        level++;
+    }
     let size = blocks_size(level);
     let start = blocks_start(level) + face * size.x * size.y;
     let at = blocks >> vec4u(level);
     var range = BLOCKS_NOTHING;
-    for (var k = 0u; k < 4u; k++) {
-        let place = min(at.xy + vec2u(k & 1u, k >> 1u), at.zw);
-        let found = tiles_blocks[start + place.y * size.x + place.x];
-        range = vec2f(min(range.x, found.x), max(range.y, found.y));
+    for (var y = at.y; y <= at.w; y++) {
+        for (var x = at.x; x <= at.z; x++) {
+            let found = tiles_blocks[start + y * size.x + x];
+            range = vec2f(min(range.x, found.x), max(range.y, found.y));
+        }
     }
     let room = TILES_DEPTH.x + TILES_DEPTH.y * abs(depths);
     return range.x <= range.y && depths.y + room.y >= range.x && depths.x - room.x <= range.y;

@@ -18,8 +18,9 @@
 //! - The caller hands over the occluders as triangles ([`Occluder`](crate::Occluder), in
 //!   [`LightInputs::occluders`](crate::LightInputs)): all that may block the light, or a shadow is missed. Without them
 //!   nothing bounds the shadows, and the whole ray is marched. Nothing need be closed, manifold or oriented.
-//! - Silhouettes are found in the vertex stage, from edges that were listed when the mesh was uploaded; walls and caps reach
-//!   to infinity by homogeneous coordinates, so that no far plane cuts them off.
+//! - Silhouettes are found on the GPU, from edges that were listed when the mesh was uploaded, and only they are drawn; walls
+//!   reach to infinity by homogeneous coordinates, so that no far plane cuts them off. Edges and triangles that the shadow
+//!   map shows to lie in the shadow of others, a thousandth of their distance apart, are left out.
 //! - Where the ray enters a shadow a piece bounds d1, where it leaves d2. A ray that enters and never leaves ends in the
 //!   shadow: d2 = D. A compute pass asks whether a triangle lies between eye and light; then d1 = 0.
 //! - Bounds are never too small: a piece whose orientation or distance rounding decides counts for both, at the outer end of
@@ -32,8 +33,10 @@
 //!
 //! # Cost
 //!
-//! Edges x 6 and triangles x 3 (6 for local lights) vertices, the fragments of all silhouettes' walls, and the steps of the
-//! middles. Two half floats a pixel; 28 bytes a triangle and 16 an edge, shared by all places of a mesh.
+//! A look at every edge and triangle, the fragments of the silhouettes' walls, and the steps of the middles. Four half floats a
+//! pixel; 12 bytes a corner and a triangle and 16 an edge, shared by all places of a mesh, and 8 an element of each place. The
+//! walls are what costs: on a software driver those of a dragon of 200 000 triangles, 640 x 480 pixels, about as much as
+//! 500 steps a ray.
 //!
 //! # Where it fails
 //!

@@ -192,8 +192,8 @@ pub(crate) fn passes(
     passes
 }
 
-/// Pixels look at the slice beside them, which is half a pixel off at most, unless the slices are given by hand. Light
-/// through a picture is summed up along whole slices.
+/// How far from its ray a pixel looks: at the slice beside it, which is half a pixel off at most, unless the slices are
+/// given by hand.
 pub(crate) fn reach(params: &Params) -> Reach {
     match params.resolution.slices {
         0 => Reach::Pixels(1.0),

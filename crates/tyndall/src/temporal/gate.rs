@@ -1,0 +1,201 @@
+//! Passes that are recorded, and do nothing where nothing is stale.
+
+use super::gpu::{BLOCKS, Buffers, REUSE};
+use crate::gpu::{
+    layout,
+    pass::{Dispatch, Pass, Vertices, Work, Workgroups},
+    program::ComputeProgram,
+    scope::{LightScope, Shared},
+};
+
+const GATE: &str = include_str!("gate.wgsl");
+const OPEN: &str = include_str!("gate_open.wgsl");
+const PASS: &str = include_str!("gate_pass.wgsl");
+
+/// Bytes of the arguments of one dispatch or draw.
+const STRIDE: u64 = 16;
+
+/// The gate's shaders.
+pub(super) struct Programs {
+    open: ComputeProgram,
+    pass: ComputeProgram,
+}
+
+impl Programs {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        shared: &Shared,
+        params: wgpu::BindGroupLayoutEntry,
+    ) -> Self {
+        let program = |wgsl, entry_point, more: &[wgpu::BindGroupLayoutEntry]| {
+            let shared_own = [
+                params,
+                layout::storage(1, true),
+                layout::storage(2, true),
+                layout::storage(3, false),
+            ];
+            let own = [&shared_own[..], more].concat();
+            let modules = [REUSE, BLOCKS, GATE, wgsl];
+            ComputeProgram::new(device, shared, "reuse gate", &modules, entry_point, &own)
+                .for_all_lights()
+        };
+        let written = layout::storage(4, true);
+        let words = layout::uniform::<[u32; 4]>(5);
+        Self {
+            open: program(OPEN, "gate_open", &[written]),
+            pass: program(PASS, "gate_pass", &[written, words]),
+        }
+    }
+}
+
+/// These passes with sizes that the GPU takes or leaves, after the one that says which.
+pub(super) fn gate(
+    passes: Vec<Pass>,
+    buffers: &Buffers,
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+) -> Vec<Pass> {
+    let slots = passes.iter().map(slots).sum::<u64>().max(1);
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
+    let key = (Some(scope.index), "reuse gate");
+    let arguments = scope.pool.buffer(scope.device, key, STRIDE * slots, usage);
+    let mut gate = Gate {
+        arguments,
+        sizes: Vec::new(),
+        written: Vec::new(),
+    };
+    let placed: Vec<Placed> = passes.into_iter().map(|pass| gate.place(pass)).collect();
+    let own = [
+        &buffers.params,
+        &buffers.state,
+        &buffers.blocks,
+        &gate.arguments,
+    ];
+    let own = own.map(|buffer| buffer.as_entire_binding());
+    let sizes = scope.upload("reuse gate sizes", &gate.sizes);
+    let open = [&own[..], &[sizes.as_entire_binding()]].concat();
+    let open = scope.dispatch(&programs.open, &open, [1; 3]);
+    let words: Vec<[u32; 4]> = gate.written.iter().map(|written| written.words).collect();
+    let words = scope.blocks("reuse gate words", words);
+    let pass_on = |index: usize| {
+        let written = gate.written[index].buffer.as_entire_binding();
+        let resources = [&own[..], &[written, words.binding(index as u32)]].concat();
+        scope.dispatch(&programs.pass, &resources, [1; 3])
+    };
+    let mut gated = vec![Pass::compute(scope.pass_name("gate"), vec![open])];
+    for Placed { pass, waits } in placed {
+        match pass.work {
+            // A dispatch's size is passed on right before it.
+            Work::Compute(dispatches) => {
+                let pairs = dispatches.into_iter().zip(waits);
+                let dispatches = pairs
+                    .flat_map(|(dispatch, wait)| wait.map(&pass_on).into_iter().chain([dispatch]));
+                gated.push(Pass::compute(pass.name, dispatches.collect()));
+            }
+            work => {
+                let before: Vec<Dispatch> = waits.into_iter().flatten().map(&pass_on).collect();
+                if !before.is_empty() {
+                    gated.push(Pass::compute(format!("gate of {}", pass.name), before));
+                }
+                gated.push(Pass { work, ..pass });
+            }
+        }
+    }
+    gated
+}
+
+/// Sizes of a light's passes.
+struct Gate {
+    arguments: wgpu::Buffer,
+    /// Of what is known beforehand; zeros where an earlier pass writes it.
+    sizes: Vec<[u32; 4]>,
+    written: Vec<Written>,
+}
+
+/// A size that an earlier pass writes.
+struct Written {
+    buffer: wgpu::Buffer,
+    /// The first word there, how many, and the first of the gate's.
+    words: [u32; 4],
+}
+
+/// A pass whose sizes are the gate's.
+struct Placed {
+    pass: Pass,
+    /// For each dispatch or draw, which of [`Gate::written`] it waits for.
+    waits: Vec<Option<usize>>,
+}
+
+/// Dispatches and draws of a pass.
+fn slots(pass: &Pass) -> u64 {
+    let slots = match &pass.work {
+        Work::Compute(dispatches) => dispatches.len(),
+        Work::FullScreen(draws) => draws.len(),
+        Work::Draw { draws, .. } => draws.len(),
+        Work::Stencil { .. } => 0,
+    };
+    slots as u64
+}
+
+impl Gate {
+    fn place(&mut self, mut pass: Pass) -> Placed {
+        let mut waits = Vec::new();
+        match &mut pass.work {
+            Work::Compute(dispatches) => {
+                for dispatch in dispatches {
+                    let (place, wait) = match &dispatch.workgroups {
+                        Workgroups::Count([x, y, z]) => (self.known([*x, *y, *z, 0]), None),
+                        Workgroups::Indirect(buffer, offset) => self.wait(buffer, *offset, 3),
+                    };
+                    dispatch.workgroups = Workgroups::Indirect(place.0, place.1);
+                    waits.push(wait);
+                }
+            }
+            Work::FullScreen(draws) => {
+                for draw in draws {
+                    draw.gate = Some(self.known([3, 1, 0, 0]));
+                }
+            }
+            Work::Draw { draws, .. } => {
+                for draw in draws {
+                    let (place, wait) = match &draw.vertices {
+                        Vertices::Direct {
+                            vertices,
+                            instances,
+                        } => {
+                            let count = instances.len() as u32;
+                            (self.known([*vertices, count, 0, instances.start]), None)
+                        }
+                        Vertices::Indirect(buffer, offset) => self.wait(buffer, *offset, 4),
+                    };
+                    draw.vertices = Vertices::Indirect(place.0, place.1);
+                    waits.push(wait);
+                }
+            }
+            Work::Stencil { .. } => {}
+        }
+        Placed { pass, waits }
+    }
+
+    /// A place for this size.
+    fn known(&mut self, size: [u32; 4]) -> (wgpu::Buffer, u64) {
+        let offset = STRIDE * self.sizes.len() as u64;
+        self.sizes.push(size);
+        (self.arguments.clone(), offset)
+    }
+
+    /// A place for a size that is written elsewhere.
+    fn wait(
+        &mut self,
+        buffer: &wgpu::Buffer,
+        offset: u64,
+        words: u32,
+    ) -> ((wgpu::Buffer, u64), Option<usize>) {
+        let place = self.known([0; 4]);
+        self.written.push(Written {
+            buffer: buffer.clone(),
+            words: [(offset / 4) as u32, words, (place.1 / 4) as u32, 0],
+        });
+        (place, Some(self.written.len() - 1))
+    }
+}
