@@ -159,6 +159,18 @@ macro_rules! param {
             },
         }
     };
+    (flag $field:ident, $about:literal) => {
+        $crate::techniques::params::Param {
+            key: stringify!($field),
+            about: $about,
+            range: "true or false",
+            get: |p| $crate::techniques::Value::Bool(p.$field),
+            set: |p, v| {
+                p.$field = v.bool()?;
+                Some(())
+            },
+        }
+    };
     // One of a list of words, which are named again.
     (choice $field:ident, $choices:ident, $about:literal, $range:literal) => {
         $crate::techniques::params::Param {

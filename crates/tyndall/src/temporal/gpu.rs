@@ -12,7 +12,7 @@ use crate::{
     error::PrepareError,
     frame::Light,
     gpu::{
-        layout,
+        layout, limits,
         pass::{Draw, FullScreen, Pass, Vertices, Work, Workgroups},
         program::{ComputeProgram, Raster, STENCIL_FORMAT, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
@@ -166,16 +166,8 @@ pub(crate) fn check(
     });
     // The witness takes two words a pixel, the map one a texel.
     let needed = (4 * texels).max(8 * u64::from(width) * u64::from(height));
-    let limit = limits.max_storage_buffer_binding_size;
-    if needed > limit {
-        return Err(PrepareError::Limit {
-            what: format!("temporal reuse (lights[{index}])"),
-            needed,
-            limit,
-            name: "max_storage_buffer_binding_size",
-        });
-    }
-    Ok(())
+    let of = format!("temporal reuse (lights[{index}])");
+    limits::check_storage(limits, &of, &[("memory", needed)])
 }
 
 /// What a frame knows of a light's reuse before the light's passes are made.

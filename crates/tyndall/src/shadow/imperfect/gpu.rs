@@ -11,7 +11,7 @@ use crate::{
     frame::Emitter,
     gpu::{
         fill::Fill,
-        layout,
+        layout, limits,
         pass::Pass,
         program::ComputeProgram,
         scope::{Blocks, LightScope, Shared},
@@ -188,22 +188,12 @@ impl Maps {
         limits: &wgpu::Limits,
         others: &[(&str, u64)],
     ) -> Result<(), PrepareError> {
-        let limit = limits.max_storage_buffer_binding_size;
         let own = [
             ("map of a sample", self.bytes() / u64::from(self.batch)),
             ("points", 16 * u64::from(self.cloud)),
         ];
-        for &(what, needed) in own.iter().chain(others) {
-            if needed > limit {
-                return Err(PrepareError::Limit {
-                    what: format!("{what} of technique `{technique}` (lights[{index}])"),
-                    needed,
-                    limit,
-                    name: "max_storage_buffer_binding_size",
-                });
-            }
-        }
-        Ok(())
+        let of = format!("technique `{technique}` (lights[{index}])");
+        limits::check_storage(limits, &of, &[&own, others].concat())
     }
 
     /// Bytes of the maps of a batch.

@@ -21,14 +21,11 @@ const HYBRID_PARALLEL: f32 = 0.999999;
 @fragment
 fn hybrid(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = frame_ray(position);
-    let pixel = vec2u(position.xy);
-    let left = dot(transmittance(frame.medium.sigma_t, ray.length), vec3f(1.0 / 3.0));
-    let shaded = hybrid_shaded(ray, textureLoad(hybrid_bounds, pixel, 0).xyz);
+    let shaded = hybrid_shaded(ray, textureLoad(hybrid_bounds, vec2u(position.xy), 0).xyz);
     if hybrid_params.show != HYBRID_SHOW_LIGHT {
-        return vec4f(vec3f(shaded.x, shaded.y, shaded.y - shaded.x), left);
+        return vec4f(shaded.x, shaded.y, shaded.y - shaded.x, 1.0);
     }
-    let before = textureLoad(frame_lights_before, pixel, 0).rgb;
-    return vec4f(before + hybrid_light(ray, shaded), left);
+    return frame_output(position, ray, hybrid_light(ray, shaded));
 }
 
 // The stretch [m] that holds every shadow on the ray; empty where x >= y.

@@ -48,8 +48,8 @@
 pub(crate) mod gpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
-    params::{Param, Parameters, word},
+    Backends, LightKind, Technique, TechniqueInfo,
+    params::{Param, Parameters, param},
 };
 
 /// The entry in the table.
@@ -98,25 +98,9 @@ impl Default for Params {
 impl Parameters for Params {
     const TECHNIQUE: &'static str = INFO.name;
     const PARAMS: &'static [&'static [Param<Self>]] = &[&[
-        Param {
-            key: "steps",
-            about: "steps over a whole ray",
-            range: "a whole number from 1 to 65536",
-            get: |p| Value::Integer(p.steps.into()),
-            set: |p, v| {
-                p.steps = v.integer(1..=65536)?;
-                Some(())
-            },
-        },
-        Param {
-            key: "show",
-            about: "the light, or front and back distances of the shadow volumes",
-            range: "\"light\" or \"bounds\"",
-            get: |p| word(&p.show, SHOWS),
-            set: |p, v| {
-                p.show = v.choice(SHOWS)?;
-                Some(())
-            },
-        },
+        param!(whole steps, 1..=65536, "steps over a whole ray"),
+        param!(choice show, SHOWS,
+            "the light, or front and back distances of the shadow volumes",
+            "\"light\" or \"bounds\""),
     ]];
 }

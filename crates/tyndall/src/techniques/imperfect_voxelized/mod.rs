@@ -83,7 +83,7 @@
 pub(crate) mod gpu;
 
 use super::{
-    Backends, LightKind, Technique, TechniqueInfo, Value,
+    Backends, LightKind, Technique, TechniqueInfo,
     params::{Param, Parameters, param},
 };
 
@@ -178,16 +178,7 @@ impl Parameters for Params {
         param!(choice weighting, WEIGHTINGS,
             "what a voxel counts for: its share of the unshadowed light, or as much as any",
             "\"airlight\" or \"uniform\""),
-        Param {
-            key: "batched",
-            about: "all samples at once; false: each in passes of its own",
-            range: "true or false",
-            get: |p| Value::Bool(p.batched),
-            set: |p, v| {
-                p.batched = v.bool()?;
-                Some(())
-            },
-        },
+        param!(flag batched, "all samples at once; false: each in passes of its own"),
         param!(real epipole_radius, 0..=100,
             "rays this near to a sample's axis compare distances [pixels]"),
     ]];

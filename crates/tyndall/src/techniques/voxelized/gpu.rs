@@ -10,7 +10,7 @@ use crate::{
     error::PrepareError,
     gpu::{
         fill::Fill,
-        layout,
+        layout, limits,
         pass::Pass,
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
@@ -128,20 +128,6 @@ pub(crate) fn check(
     limits: &wgpu::Limits,
     index: usize,
 ) -> Result<(), PrepareError> {
-    let (needed, limit) = (
-        voxels::bytes(params.resolution),
-        limits.max_storage_buffer_binding_size,
-    );
-    if needed <= limit {
-        return Ok(());
-    }
-    Err(PrepareError::Limit {
-        what: format!(
-            "voxels of technique `{}` (lights[{index}])",
-            super::INFO.name
-        ),
-        needed,
-        limit,
-        name: "max_storage_buffer_binding_size",
-    })
+    let of = format!("technique `{}` (lights[{index}])", super::INFO.name);
+    limits::check_storage(limits, &of, &[("voxels", voxels::bytes(params.resolution))])
 }
