@@ -16,7 +16,8 @@ use tyndall_testkit::metrics::PictureError;
 use super::{Stage, error_of};
 use crate::{failure::Failure, picture::Picture};
 
-/// The most steps that are tried.
+/// The most steps that are tried. Of a local light a software driver may not take so many, which then are never good
+/// enough; see `ray-march`.
 pub const MAX_STEPS: u32 = 32768;
 
 /// Bisection ends where the counts on either side of the target differ by this share.

@@ -27,6 +27,10 @@ const AREA_RESOLVE: &str = include_str!("area_resolve.wgsl");
 /// Pixels a side that a workgroup of `area.wgsl` takes.
 const TILE: u32 = 8;
 
+/// Steps of all samples together that an invocation takes in one dispatch: drivers end what runs for too long, Mesa's
+/// lavapipe without a word after 65535 turns of all loops, of which a step takes some.
+const MOST_STEPS: u32 = 16_384;
+
 /// `RayMarchParams` of `params.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -116,7 +120,8 @@ fn march_area(
     uniform: &wgpu::Buffer,
 ) -> Vec<Pass> {
     let (count, limits) = (area.positions.len() as u32, scope.device.limits());
-    let maps = Maps::new(&scope.inputs, params.points, count, 0, &limits);
+    let at_once = count.min((MOST_STEPS / params.steps).max(1));
+    let maps = Maps::new(&scope.inputs, params.points, at_once, 0, &limits);
     let sums = scope.storage("marched light", sums_bytes(scope.size));
     let (buffers, sample) = programs.maps.sample(scope, area, &maps);
     let mut passes = vec![sample];
