@@ -109,7 +109,9 @@ fn no_place_makes_min_max_as_wrong_as_brute_force() {
     assert!(rows.len() >= 3, "{table:#}");
     for row in rows {
         assert_eq!(row["not finite"], 0, "{row:#}");
-        assert_eq!(row["pixels over twice the p99"], 0, "{row:#}");
+        if row["technique"] == "min-max" {
+            assert_eq!(row["pixels over twice the p99"], 0, "{row:#}");
+        }
         assert!(row["p99 of brute force"].as_f64().unwrap() > 0.0, "{row:#}");
     }
 }
