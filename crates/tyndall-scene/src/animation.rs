@@ -136,9 +136,13 @@ impl NodeAnimation {
             let curve = curve.as_ref();
             curve.and_then(|curve| curve.at(seconds)).unwrap_or(rest)
         }
+        let rotation = value(&self.rotation, seconds, self.rest.rotation);
         Placement {
             translation: value(&self.translation, seconds, self.rest.translation),
-            rotation: value(&self.rotation, seconds, self.rest.rotation).normalize(),
+            // A file's rotations may be zeros.
+            rotation: glam::Vec4::from(rotation)
+                .try_normalize()
+                .map_or(self.rest.rotation, Quat::from_vec4),
             scale: value(&self.scale, seconds, self.rest.scale),
         }
     }

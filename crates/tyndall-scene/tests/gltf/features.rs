@@ -619,10 +619,10 @@ fn animations_move_nodes_and_rest_where_they_have_no_channel() {
 fn broken_animations_are_refused_with_what_was_found() {
     for (times, path, node, message) in [
         (
-            &[0.0, 0.0][..],
+            &[1.0, 0.0][..],
             "translation",
             0,
-            "animation 0, channel 0, input: times must rise, found 0 after 0",
+            "animation 0, channel 0, input: times must not fall, found 0 after 1",
         ),
         (
             &[0.0],
