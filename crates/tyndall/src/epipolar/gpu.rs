@@ -2,6 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::grid::GridScene;
+use crate::{gpu::scope::LightScope, light::LightModel, shadow};
+
 /// What a shader needs that works in epipolar coordinates.
 pub(crate) const EPIPOLAR: &str = include_str!("epipolar.wgsl");
 
@@ -55,4 +58,27 @@ impl EpipolarUniform {
         position: [0.0; 3],
         pad: 0,
     };
+}
+
+/// What is made of a prepared light as a grid sees it, `side` texels of its map a side; `None` of a light without a model.
+pub(crate) fn with_scene<T>(
+    scope: &LightScope<'_>,
+    side: usize,
+    make: impl FnOnce(&GridScene<'_>) -> Option<T>,
+) -> Option<T> {
+    let light = scope.light;
+    let faces = light
+        .shadow
+        .and_then(|projection| shadow::faces(&light.emitter, &projection))
+        .unwrap_or_default();
+    let models = LightModel::samples(light, None);
+    let model = models.first()?;
+    make(&GridScene {
+        camera: scope.rays,
+        size: scope.size,
+        light: model.source(),
+        cone: model.cone(),
+        faces: &faces,
+        side,
+    })
 }

@@ -70,11 +70,8 @@ pub(crate) struct Draw {
 
 /// How much a draw draws.
 pub(crate) enum Vertices {
-    /// So many vertices, once an instance.
-    Direct {
-        vertices: u32,
-        instances: std::ops::Range<u32>,
-    },
+    /// So many vertices, so many times.
+    Direct { vertices: u32, instances: u32 },
     /// What stands in a buffer at an offset [bytes].
     Indirect(wgpu::Buffer, u64),
 }
@@ -158,7 +155,7 @@ impl Pass {
                         Vertices::Direct {
                             vertices,
                             instances,
-                        } => pass.draw(0..*vertices, instances.clone()),
+                        } => pass.draw(0..*vertices, 0..*instances),
                         Vertices::Indirect(buffer, offset) => pass.draw_indirect(buffer, *offset),
                     }
                 }

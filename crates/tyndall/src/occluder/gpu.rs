@@ -249,7 +249,7 @@ impl<'a> Volumes<'a> {
             if is_local {
                 let boxes = Vertices::Direct {
                     vertices: 36,
-                    instances: 0..places,
+                    instances: places,
                 };
                 push(&programs.far_cap, &mesh.triangles, boxes);
             }

@@ -55,7 +55,7 @@ pub(super) fn gate(
     programs: &Programs,
     scope: &mut LightScope<'_>,
 ) -> Vec<Pass> {
-    let slots = passes.iter().map(slots).sum::<u64>().max(1);
+    let slots = passes.iter().map(Pass::parts).sum::<usize>().max(1) as u64;
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
     let key = (Some(scope.index), "reuse gate");
     let arguments = scope.pool.buffer(scope.device, key, STRIDE * slots, usage);
@@ -126,17 +126,6 @@ struct Placed {
     waits: Vec<Option<usize>>,
 }
 
-/// Dispatches and draws of a pass.
-fn slots(pass: &Pass) -> u64 {
-    let slots = match &pass.work {
-        Work::Compute(dispatches) => dispatches.len(),
-        Work::FullScreen(draws) => draws.len(),
-        Work::Draw { draws, .. } => draws.len(),
-        Work::Stencil { .. } => 0,
-    };
-    slots as u64
-}
-
 impl Gate {
     fn place(&mut self, mut pass: Pass) -> Placed {
         let mut waits = Vec::new();
@@ -162,10 +151,7 @@ impl Gate {
                         Vertices::Direct {
                             vertices,
                             instances,
-                        } => {
-                            let count = instances.len() as u32;
-                            (self.known([*vertices, count, 0, instances.start]), None)
-                        }
+                        } => (self.known([*vertices, *instances, 0, 0]), None),
                         Vertices::Indirect(buffer, offset) => self.wait(buffer, *offset, 4),
                     };
                     draw.vertices = Vertices::Indirect(place.0, place.1);

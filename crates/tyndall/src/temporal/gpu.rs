@@ -420,7 +420,7 @@ fn mark(
         groups: scope.groups(program.bind(scope.device, &resources)),
         vertices: Vertices::Direct {
             vertices: 3,
-            instances: 0..1,
+            instances: 1,
         },
     };
     Pass {

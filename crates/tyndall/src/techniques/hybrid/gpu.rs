@@ -159,7 +159,7 @@ pub(crate) fn passes(
         passes.push(volumes.list("list silhouettes", &programs.volumes, scope));
         let whole = Vertices::Direct {
             vertices: 3,
-            instances: 0..1,
+            instances: 1,
         };
         let from_eye = scope.draw_mesh(&programs.eye_bounds, &[eye.as_entire_binding()], whole);
         let boundaries = volumes.draws(&programs.volumes, scope);

@@ -406,7 +406,7 @@ impl Mesh {
             None => {
                 let strips = Vertices::Direct {
                     vertices: 2 * (columns + 1),
-                    instances: 0..rows * self.extent.faces,
+                    instances: rows * self.extent.faces,
                 };
                 vec![scope.draw_mesh(&programs.strip, &own, strips)]
             }
@@ -423,7 +423,7 @@ impl Mesh {
         if self.extent.faces == 1 {
             let sides = Vertices::Direct {
                 vertices: 9 * 2 * (columns + rows),
-                instances: 0..1,
+                instances: 1,
             };
             draws.push(scope.draw_mesh(&programs.side, &own, sides));
         }

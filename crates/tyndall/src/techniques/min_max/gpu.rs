@@ -6,8 +6,8 @@ use super::{Integrator, Params, Show, svd};
 use crate::{
     effect::LightInputs,
     epipolar::{
-        gpu::{EPIPOLAR, EpipolarUniform},
-        grid::{EpipolarGrid, GridScene},
+        gpu::{EPIPOLAR, EpipolarUniform, with_scene},
+        grid::EpipolarGrid,
     },
     error::PrepareError,
     frame::{Emitter, Light},
@@ -18,12 +18,8 @@ use crate::{
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, STRETCH},
     },
-    light::LightModel,
     physics::medium::Optics,
-    shadow::{
-        self,
-        pyramid::{self, PYRAMID, Source},
-    },
+    shadow::pyramid::{self, PYRAMID, Source},
     temporal::Reach,
     validate,
 };
@@ -325,21 +321,9 @@ impl Bytes {
 }
 
 fn grid(params: &Params, scope: &LightScope<'_>) -> Option<EpipolarGrid> {
-    let light = scope.light;
     let map = scope.inputs.shadow_map.map(|view| view.texture());
-    let faces = light
-        .shadow
-        .and_then(|projection| shadow::faces(&light.emitter, &projection))
-        .unwrap_or_default();
-    let models = LightModel::samples(light, None);
-    let model = models.first()?;
-    let grid = GridScene {
-        camera: scope.rays,
-        size: scope.size,
-        light: model.source(),
-        cone: model.cone(),
-        faces: &faces,
-        side: map.map_or(1, |map| map.width().max(map.height())) as usize,
-    };
-    EpipolarGrid::new(&grid, &params.resolution)
+    let side = map.map_or(1, |map| map.width().max(map.height())) as usize;
+    with_scene(scope, side, |scene| {
+        EpipolarGrid::new(scene, &params.resolution)
+    })
 }

@@ -4,8 +4,8 @@ use super::Params;
 use crate::{
     epipolar::{
         Resolution,
-        gpu::{EPIPOLAR, EpipolarUniform},
-        grid::{EpipolarGrid, GridScene},
+        gpu::{EPIPOLAR, EpipolarUniform, with_scene},
+        grid::EpipolarGrid,
     },
     error::PrepareError,
     gpu::{
@@ -16,8 +16,6 @@ use crate::{
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, STRETCH},
     },
-    light::LightModel,
-    shadow,
     voxels::gpu::{self as voxels, RUNS, Scan, VOXELS},
 };
 
@@ -99,27 +97,14 @@ pub(crate) fn passes(
 }
 
 fn grid(params: &Params, scope: &LightScope<'_>) -> Option<EpipolarGrid> {
-    let light = scope.light;
-    let faces = light
-        .shadow
-        .and_then(|projection| shadow::faces(&light.emitter, &projection))
-        .unwrap_or_default();
-    let models = LightModel::samples(light, None);
-    let model = models.first()?;
-    let scene = GridScene {
-        camera: scope.rays,
-        size: scope.size,
-        light: model.source(),
-        cone: model.cone(),
-        faces: &faces,
-        side: params.resolution as usize,
-    };
     let resolution = Resolution {
         slices: params.resolution,
         samples: params.resolution,
         epipole_radius: params.epipole_radius,
     };
-    Some(EpipolarGrid::new(&scene, &resolution)?.in_rows(&scene, params.resolution))
+    with_scene(scope, params.resolution as usize, |scene| {
+        Some(EpipolarGrid::new(scene, &resolution)?.in_rows(scene, params.resolution))
+    })
 }
 
 /// Refuses voxels that the device cannot bind.
