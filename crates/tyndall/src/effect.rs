@@ -247,8 +247,8 @@ impl Effect {
         let (mut passes, mut counts) = (Vec::new(), Vec::new());
         let mut before = self.shared.absent.light.clone();
         for (i, (light, light_inputs)) in lights.iter().enumerate() {
-            let layers = light_inputs.glass.map(|glass| glass_layers(light, glass));
-            let (light_uniform, variant) = LightUniform::new(light, rays.eye, layers);
+            let has_glass = light_inputs.glass.is_some();
+            let (light_uniform, variant) = LightUniform::new(light, rays.eye, has_glass);
             let buffer = view
                 .pool
                 .uniform(device, queue, (Some(i), "light"), &light_uniform);
@@ -453,11 +453,6 @@ const BLACK: Light = Light {
     shadow: None,
     texture: None,
 };
-
-/// Layers a face of a glass texture.
-fn glass_layers(light: &Light, glass: &wgpu::TextureView) -> u32 {
-    glass.texture().depth_or_array_layers() / validate::faces(light)
-}
 
 /// The extent of a plain 2-D texture.
 fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {

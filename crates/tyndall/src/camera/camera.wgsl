@@ -22,17 +22,19 @@ struct Ray {
     direction: vec3f, // unit
 }
 
+fn camera_is_orthographic() -> bool {
+    return (frame_choice(frame.camera.flags) & CAMERA_ORTHOGRAPHIC) != 0u;
+}
+
 fn camera_view_depth(depth: f32) -> f32 {
     let camera = frame.camera;
-    let reversed = (camera.flags & CAMERA_REVERSED_DEPTH) != 0u;
-    let from_far = saturate(select(1.0 - depth, depth, reversed));
-    if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
-        return mix(camera.far, camera.near, from_far);
-    }
-    if (camera.flags & CAMERA_INFINITE_DEPTH) != 0u {
-        return camera.near / max(from_far, camera.near / camera.far);
-    }
-    return camera.near * camera.far / (camera.near + from_far * (camera.far - camera.near));
+    let is_reversed = (camera.flags & CAMERA_REVERSED_DEPTH) != 0u;
+    let from_far = saturate(select(1.0 - depth, depth, is_reversed));
+    let orthographic = mix(camera.far, camera.near, from_far);
+    let finite = camera.near * camera.far / (camera.near + from_far * (camera.far - camera.near));
+    let infinite = camera.near / max(from_far, camera.near / camera.far);
+    let perspective = select(finite, infinite, (camera.flags & CAMERA_INFINITE_DEPTH) != 0u);
+    return select(perspective, orthographic, camera_is_orthographic());
 }
 
 // The ray through a point of the picture [pixels], (0, 0) at the top left corner, that ends at this depth-buffer value.
@@ -46,9 +48,9 @@ fn camera_ray_to(pixel: vec2f, view_depth: f32) -> Ray {
     let ndc = vec2f(2.0, -2.0) * (pixel / camera.size - 0.5);
     let on_plane = camera.center + camera.half_extent * ndc;
     let offset = on_plane.x * camera.right + on_plane.y * camera.up;
-    if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
-        return Ray(offset, max(view_depth, 0.0), camera.forward);
-    }
-    let along = camera.forward + offset;
-    return Ray(vec3f(0.0), view_depth * length(along), normalize(along));
+    let is_orthographic = camera_is_orthographic();
+    let along = camera.forward + select(offset, vec3f(0.0), is_orthographic);
+    let stretch = length(along);
+    let origin = select(vec3f(0.0), offset, is_orthographic);
+    return Ray(origin, max(view_depth, 0.0) * stretch, along / stretch);
 }

@@ -203,13 +203,16 @@ mod tests {
     /// `stretch.wgsl` as the test harness can bind it: all in group 0, made for one kind of light.
     #[cfg(feature = "gpu")]
     fn stretch_modules(kind: u32) -> Vec<String> {
-        use crate::gpu::shader::{AIRLIGHT, FRAME_MODULES, LIGHT_MODULES, STRETCH};
+        use crate::gpu::shader::{
+            AIRLIGHT, CHOICE, CHOICE_ALONE, FRAME_MODULES, LIGHT_MODULES, STRETCH,
+        };
         let declared = "@group(0) @binding(20) var airlight_table: texture_2d_array<f32>;";
         [FRAME_MODULES, LIGHT_MODULES, &[AIRLIGHT, STRETCH, declared]]
             .concat()
             .iter()
             .map(|module| {
                 module
+                    .replace(CHOICE, CHOICE_ALONE)
                     .replace("@group(1) @binding(", "@group(0) @binding(1")
                     .replace(
                         "LIGHT_KIND: u32 = 0u",
@@ -320,7 +323,7 @@ mod tests {
                         usage: wgpu::BufferUsages::UNIFORM,
                     })
             };
-            let (light_uniform, variant) = LightUniform::new(&light, DVec3::ZERO, None);
+            let (light_uniform, variant) = LightUniform::new(&light, DVec3::ZERO, false);
             let frame_buffer = uniform(bytemuck::bytes_of(&FrameUniform::new(
                 &frame,
                 &rays,

@@ -32,10 +32,6 @@ struct EpipolarRay {
     t: vec2f,
 }
 
-fn epipolar_is_orthographic() -> bool {
-    return (frame.camera.flags & CAMERA_ORTHOGRAPHIC) != 0u;
-}
-
 // Grows from 0 to 2 as the angle of (along, across) to the axis grows from 0 to pi, at the price of a division.
 fn epipolar_angle(across: f32, along: f32) -> f32 {
     let share = across / max(across + abs(along), 1e-30);
@@ -47,7 +43,7 @@ fn epipolar_outward(e: Epipolar, alpha: f32) -> vec3f {
 }
 
 fn epipolar_ray(e: Epipolar, ray: Ray) -> EpipolarRay {
-    if !epipolar_is_orthographic() {
+    if !camera_is_orthographic() {
         let x = vec2f(dot(ray.direction, e.across_x), dot(ray.direction, e.across_y));
         let sine = length(x);
         let cosine = dot(ray.direction, e.axis);
@@ -85,7 +81,7 @@ fn epipolar_ray(e: Epipolar, ray: Ray) -> EpipolarRay {
 
 fn epipolar_place(e: Epipolar, alpha: f32) -> f32 {
     var place = (alpha - e.alpha_start) / e.alpha_step;
-    if light_is_local() || !epipolar_is_orthographic() {
+    if light_is_local() || !camera_is_orthographic() {
         // A turn further where alpha lies before the first slice.
         let turn = 2.0 * PI / e.alpha_step;
         place -= floor(place / turn) * turn;
@@ -146,7 +142,7 @@ fn epipolar_light_ray(e: Epipolar, alpha: f32, outward: vec3f, gamma: f32) -> Ep
     if light_is_local() {
         return EpipolarLightRay(e.position, sin(gamma) * outward - cos(gamma) * e.axis);
     }
-    if epipolar_is_orthographic() {
+    if camera_is_orthographic() {
         return EpipolarLightRay(gamma * e.across_x + alpha * e.across_y, light.direction);
     }
     return EpipolarLightRay(gamma * outward, light.direction);
@@ -164,7 +160,7 @@ fn epipolar_shadow_range(e: Epipolar, gamma: vec2f, ends: vec2f) -> vec2f {
     } else {
         // S grows with the end. Along gamma it has one hump, where the light ray's end is seen farthest from the axis.
         let low = vec2f(epipolar_local(e, gamma.x, ends.x), epipolar_local(e, gamma.y, ends.x));
-        let hump = select(acos(min(ends.y / max(e.distance, 1e-20), 1.0)), 0.5 * PI, epipolar_is_orthographic());
+        let hump = select(acos(min(ends.y / max(e.distance, 1e-20), 1.0)), 0.5 * PI, camera_is_orthographic());
         s = vec2f(min(low.x, low.y), epipolar_local(e, clamp(hump, gamma.x, gamma.y), ends.y));
     }
     return (s - e.b_start) * e.b_scale;
@@ -179,7 +175,7 @@ fn epipolar_shadow(e: Epipolar, gamma: f32, end: f32) -> f32 {
 }
 
 fn epipolar_sun(e: Epipolar, gamma: f32, end: f32) -> f32 {
-    if epipolar_is_orthographic() {
+    if camera_is_orthographic() {
         return gamma * e.cotangent + end;
     }
     return epipolar_angle(gamma, -end);
@@ -187,7 +183,7 @@ fn epipolar_sun(e: Epipolar, gamma: f32, end: f32) -> f32 {
 
 fn epipolar_local(e: Epipolar, gamma: f32, end: f32) -> f32 {
     let across = end * sin(gamma);
-    if epipolar_is_orthographic() {
+    if camera_is_orthographic() {
         return across;
     }
     return epipolar_angle(across, e.distance - end * cos(gamma));

@@ -112,7 +112,10 @@ fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{frame::Camera, gpu::shader::SCREEN};
+    use crate::{
+        frame::Camera,
+        gpu::shader::{CHOICE_ALONE, SCREEN},
+    };
     use glam::DVec2;
     use tyndall_testkit::{device::device_or_skip, samples::in_box, wgsl};
 
@@ -256,7 +259,8 @@ mod tests {
                     fn test_exit(x: array<f32, 7>, slice: f32) -> f32 {
                         return screen_slice_border(vec2f(x[5], x[6]), 100u, u32(slice));
                     }";
-                wgsl::evaluate(gpu, &[SCREEN, prelude], expression, &inputs).expect("it runs")
+                wgsl::evaluate(gpu, &[CHOICE_ALONE, SCREEN, prelude], expression, &inputs)
+                    .expect("it runs")
             };
             let lines = evaluate("test_line(x).entry, test_line(x).step");
             let sample = evaluate("test_sample(x)");

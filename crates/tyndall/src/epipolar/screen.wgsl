@@ -53,7 +53,8 @@ fn screen_epipole_is_inside(size: vec2f, epipole: vec3f) -> bool {
 // Where the line to an exit begins: at an epipole on the picture, else where it comes in over the border.
 fn screen_entry(size: vec2f, epipole: vec3f, exit: vec2f) -> vec2f {
     let direction = screen_direction(epipole, exit);
-    if screen_epipole_is_inside(size, epipole) {
+    let starts_inside = frame_choice(u32(screen_epipole_is_inside(size, epipole))) == 1u;
+    if starts_inside {
         return epipole.xy / epipole.z + SCREEN_EPIPOLE_RADIUS * direction;
     }
     let back = screen_reach(size, exit, -direction);
@@ -88,7 +89,8 @@ fn screen_slice_border(arc: vec2f, slices: u32, slice: u32) -> f32 {
 fn screen_slices(arc: vec2f, slices: u32, border: f32) -> ScreenSlices {
     let along = fract(border - arc.x);
     let count = f32(slices);
-    if arc.y >= 1.0 {
+    let is_closed = frame_choice(u32(arc.y >= 1.0)) == 1u;
+    if is_closed {
         let place = along * count - 0.5;
         let first = u32(floor(place) + count) % slices;
         return ScreenSlices(first, (first + 1u) % slices, place - floor(place));

@@ -33,7 +33,7 @@ fn trace_texels(clip: vec4f) -> vec3f {
 // The trace of the slice through a point of the picture along a direction on it [pixels]. `axis` goes through the eye and
 // the light.
 fn trace_slice(point: vec2f, direction: vec2f, axis: vec3f) -> Trace {
-    let flat = (frame.camera.flags & CAMERA_ORTHOGRAPHIC) != 0u;
+    let flat = camera_is_orthographic();
     let here = camera_ray(point, 0.0);
     let there = camera_ray(point - 0.5 * max(frame.camera.size.x, frame.camera.size.y) * direction, 0.0);
     let normal = normalize(cross(here.direction, there.origin + there.direction - here.origin - here.direction));

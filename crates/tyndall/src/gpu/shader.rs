@@ -4,7 +4,7 @@
 pub(crate) const PHASE: &str = include_str!("../physics/phase.wgsl");
 /// Extinction.
 pub(crate) const TRANSMITTANCE: &str = include_str!("../physics/transmittance.wgsl");
-/// Airlight of point lights; needs a texture `airlight_table`.
+/// Airlight of point lights; needs `CHOICE` and a texture `airlight_table`.
 pub(crate) const AIRLIGHT: &str = include_str!("../physics/airlight.wgsl");
 /// Media; needs `FRAME`.
 pub(crate) const MEDIUM: &str = include_str!("../physics/medium.wgsl");
@@ -12,6 +12,11 @@ pub(crate) const MEDIUM: &str = include_str!("../physics/medium.wgsl");
 pub(crate) const CAMERA: &str = include_str!("../camera/camera.wgsl");
 /// Bind group 0.
 pub(crate) const FRAME: &str = include_str!("frame.wgsl");
+/// Uniforms that decide branches; needs `FRAME`.
+pub(crate) const CHOICE: &str = include_str!("choice.wgsl");
+/// The same in shaders that tests run without a depth buffer.
+#[cfg(test)]
+pub(crate) const CHOICE_ALONE: &str = "fn frame_choice(value: u32) -> u32 { return value; }";
 /// Spot cones.
 pub(crate) const CONE: &str = include_str!("../light/cone.wgsl");
 /// Bind group 1: lights.
@@ -23,13 +28,13 @@ pub(crate) const SHADOW: &str = include_str!("../shadow/shadow.wgsl");
 /// Steps along view rays; needs frame and light.
 pub(crate) const MARCH: &str = include_str!("../shadow/march.wgsl");
 
-/// Epipolar lines on the picture.
+/// Epipolar lines on the picture; needs `CHOICE`.
 pub(crate) const SCREEN: &str = include_str!("../epipolar/screen.wgsl");
 /// Slices in their shadow map; needs `SCREEN`, frame and light.
 pub(crate) const TRACE: &str = include_str!("../epipolar/trace.wgsl");
 
 /// What a pass needs that reads the camera, the medium and the depth buffer.
-pub(crate) const FRAME_MODULES: &[&str] = &[PHASE, TRANSMITTANCE, MEDIUM, CAMERA, FRAME];
+pub(crate) const FRAME_MODULES: &[&str] = &[PHASE, TRANSMITTANCE, MEDIUM, CAMERA, FRAME, CHOICE];
 /// What a pass needs besides that reads a light and its shadow map.
 pub(crate) const LIGHT_MODULES: &[&str] = &[CONE, LIGHT, SHADOW];
 

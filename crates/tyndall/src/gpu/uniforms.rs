@@ -63,7 +63,7 @@ pub(crate) struct LightUniform {
     pub(crate) position: [f32; 3],
     pub(crate) cos_outer: f32,
     pub(crate) direction: [f32; 3],
-    pub(crate) glass_layers: u32,
+    pad_direction: f32,
     pub(crate) texture_rows: [[f32; 4]; 3],
     pub(crate) clip_from_world: [[f32; 4]; 4],
     pub(crate) cube_depth: [f32; 2],
@@ -167,20 +167,15 @@ impl MediumUniform {
 
 impl LightUniform {
     /// A light as the shaders see it, and the variant of pipeline it needs.
-    pub(crate) fn new(
-        light: &frame::Light,
-        eye: DVec3,
-        glass_layers: Option<u32>,
-    ) -> (Self, LightVariant) {
+    pub(crate) fn new(light: &frame::Light, eye: DVec3, has_glass: bool) -> (Self, LightVariant) {
         let mut uniform = Self::default();
-        let mut variant = LightVariant::default();
+        let mut variant = LightVariant {
+            glass: has_glass,
+            ..LightVariant::default()
+        };
         uniform.set_emitter(&light.emitter, eye, &mut variant);
         if let Some(projection) = &light.shadow {
             uniform.set_shadow(&light.emitter, projection, eye, &mut variant);
-        }
-        if let Some(layers) = glass_layers {
-            uniform.glass_layers = layers;
-            variant.glass = true;
         }
         let mapping = light
             .texture
@@ -322,8 +317,8 @@ mod tests {
             ),
             (
                 "Light",
-                layout!(LightUniform: color, cos_inner, position, cos_outer, direction, glass_layers,
-                    texture_rows, clip_from_world, cube_depth, standard_depth),
+                layout!(LightUniform: color, cos_inner, position, cos_outer, direction, texture_rows,
+                    clip_from_world, cube_depth, standard_depth),
             ),
             (
                 "RayMarchParams",

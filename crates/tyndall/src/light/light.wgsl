@@ -23,7 +23,6 @@ struct Light {
     position: vec3f, // of a rectangle its middle [m]
     cos_outer: f32,
     direction: vec3f, // the way it travels, the spot's axis, or the rectangle's normal; unit
-    glass_layers: u32,
     texture_rows: array<vec4f, 3>, // products with (point, 1), see LIGHT_TEXTURE
     clip_from_world: mat4x4f, // of a single shadow map; depth 1 at its near plane
     cube_depth: vec2f, // depth = x / (distance along the face's axis) + y, 1 at the near plane

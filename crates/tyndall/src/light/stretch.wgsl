@@ -42,7 +42,8 @@ fn stretch_short(ray: Ray, a: f32, b: f32) -> vec3f {
 // A light that shines evenly: the airlight tables.
 fn stretch_point(place: AirlightLight, stretch: vec2f) -> vec3f {
     var sum = vec3f(0.0);
-    for (var i = 0u; i < frame.medium.count; i++) {
+    let count = frame_choice(frame.medium.count);
+    for (var i = 0u; i < count; i++) {
         sum += frame.medium.components[i].sigma_s * airlight_segment(i, frame.medium.sigma_t, place, stretch);
     }
     return light.color * sum;

@@ -51,7 +51,7 @@ fn occluder_way(point: vec3f) -> vec3f {
 fn occluder_project(p: vec4f) -> vec4f {
     let camera = frame.camera;
     let on_plane = vec2f(dot(camera.right, p.xyz), dot(camera.up, p.xyz));
-    if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
+    if camera_is_orthographic() {
         return vec4f((on_plane - p.w * camera.center) / camera.half_extent, 0.5 * p.w, p.w);
     }
     let depth = dot(camera.forward, p.xyz);

@@ -316,6 +316,7 @@ mod tests {
                 crate::gpu::shader::PHASE,
                 crate::gpu::shader::TRANSMITTANCE,
                 crate::gpu::shader::AIRLIGHT,
+                crate::gpu::shader::CHOICE_ALONE,
                 "@group(0) @binding(0) var airlight_table: texture_2d_array<f32>;",
             ],
             &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&picture) }],

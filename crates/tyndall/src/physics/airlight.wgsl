@@ -70,7 +70,8 @@ fn airlight_channel(layer: u32, sigma_t: f32, light: AirlightLight, stretch: vec
 }
 
 fn airlight_segment(layer: u32, sigma_t: vec3f, light: AirlightLight, stretch: vec2f) -> vec3f {
-    if all(sigma_t == sigma_t.rrr) {
+    let is_gray = frame_choice(u32(all(sigma_t == sigma_t.rrr))) == 1u;
+    if is_gray {
         return vec3f(airlight_channel(layer, sigma_t.r, light, stretch));
     }
     return vec3f(

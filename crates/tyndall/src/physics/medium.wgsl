@@ -29,7 +29,8 @@ fn medium_phase(component: MediumComponent, cos_theta: f32) -> f32 {
 // sigma_s rho(theta), summed over the components [1/(m sr)].
 fn medium_scattering(cos_theta: f32) -> vec3f {
     var sum = vec3f(0.0);
-    for (var i = 0u; i < frame.medium.count; i++) {
+    let count = frame_choice(frame.medium.count);
+    for (var i = 0u; i < count; i++) {
         let component = frame.medium.components[i];
         sum += component.sigma_s * medium_phase(component, cos_theta);
     }

@@ -129,6 +129,11 @@ fn shadow_tint(p: vec4f) -> vec3f {
     return shadow_glass_tint(place);
 }
 
+// Layers a face.
+fn shadow_glass_layers() -> u32 {
+    return textureNumLayers(shadow_glass) / select(1u, 6u, SHADOW_KIND == SHADOW_CUBE);
+}
+
 // A tint, from three 10-bit square roots.
 fn shadow_glass_unpack(roots: u32) -> vec3f {
     let root = vec3f(vec3u(roots, roots >> 10u, roots >> 20u) & vec3u(1023u)) / 1023.0;
@@ -145,8 +150,8 @@ fn shadow_glass_tint(place: ShadowPoint) -> vec3f {
 // The same of a point at this depth over a texel. Layers come nearest to the light first, empty ones last.
 fn shadow_glass_texel_tint(texel: vec2u, face: u32, depth: f32) -> vec3f {
     var tint = vec3f(1.0);
-    for (var layer = 0u; layer < light.glass_layers; layer++) {
-        let glass = textureLoad(shadow_glass, texel, face * light.glass_layers + layer, 0).xy;
+    for (var layer = 0u; layer < shadow_glass_layers(); layer++) {
+        let glass = textureLoad(shadow_glass, texel, face * shadow_glass_layers() + layer, 0).xy;
         if shadow_reaches(depth, bitcast<f32>(glass.x)) {
             break;
         }
@@ -157,8 +162,8 @@ fn shadow_glass_texel_tint(texel: vec2u, face: u32, depth: f32) -> vec3f {
 
 // Depth of the nearest layer that tints, 1 nearest to the light; 0 where none does.
 fn shadow_glass_nearest(texel: vec2u, face: u32) -> f32 {
-    for (var layer = 0u; layer < light.glass_layers; layer++) {
-        let glass = textureLoad(shadow_glass, texel, face * light.glass_layers + layer, 0).xy;
+    for (var layer = 0u; layer < shadow_glass_layers(); layer++) {
+        let glass = textureLoad(shadow_glass, texel, face * shadow_glass_layers() + layer, 0).xy;
         let held = bitcast<f32>(glass.x);
         let depth = select(held, 1.0 - held, light.standard_depth == 1u);
         if depth <= 0.0 || any(shadow_glass_unpack(glass.y) != vec3f(1.0)) {

@@ -103,7 +103,7 @@ fn tiles_ray(place: vec2f) -> Ray {
     let camera = frame.camera;
     let on_plane = camera.center + camera.half_extent * vec2f(2.0, -2.0) * (place / camera.size - 0.5);
     let offset = on_plane.x * camera.right + on_plane.y * camera.up;
-    if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
+    if camera_is_orthographic() {
         return Ray(offset, 1.0, camera.forward);
     }
     return Ray(vec3f(0.0), 1.0, camera.forward + offset);

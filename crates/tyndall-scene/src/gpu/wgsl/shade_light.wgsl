@@ -61,7 +61,7 @@ fn shade_picture_place(point: vec3f) -> vec2f {
     let p = vec4f(point, 1.0);
     let rows = shade_light.picture_rows;
     let q = vec3f(dot(rows[0], p), dot(rows[1], p), dot(rows[2], p));
-    switch shade_light.picture {
+    switch shade_choice(shade_light.picture) {
         case SHADE_PICTURE_PROJECTIVE: {
             return q.xy / q.z + 0.5;
         }
@@ -76,7 +76,7 @@ fn shade_picture_place(point: vec3f) -> vec2f {
 }
 
 fn shade_tint(point: vec3f) -> vec3f {
-    if shade_light.picture == SHADE_PICTURE_NONE {
+    if shade_choice(shade_light.picture) == SHADE_PICTURE_NONE {
         return vec3f(1.0);
     }
     return shade_picture_color(shade_picture_place(point));
@@ -103,7 +103,7 @@ fn shade_cosine(normal: vec3f, direction: vec3f) -> f32 {
 
 // A rectangle is the Hammersley points on it (Van der Corput's sequence along one edge).
 fn shade_rect_irradiance(point: vec3f, normal: vec3f) -> vec3f {
-    let count = shade_light.samples;
+    let count = shade_choice(shade_light.samples);
     let area = length(cross(shade_light.edge_x, shade_light.edge_y));
     var sum = vec3f(0.0);
     for (var i = 0u; i < count; i++) {
@@ -114,7 +114,7 @@ fn shade_rect_irradiance(point: vec3f, normal: vec3f) -> vec3f {
         let incident = shade_from(position, point);
         let emitted = max(dot(incident.direction, shade_light.direction), 0.0);
         var tint = vec3f(1.0);
-        if shade_light.picture != SHADE_PICTURE_NONE {
+        if shade_choice(shade_light.picture) != SHADE_PICTURE_NONE {
             tint = shade_picture_color(uv);
         }
         sum += tint * incident.irradiance * emitted * shade_cosine(normal, incident.direction);
@@ -124,16 +124,16 @@ fn shade_rect_irradiance(point: vec3f, normal: vec3f) -> vec3f {
 
 // Irradiance of an unblocked surface [W/m^2].
 fn shade_direct(point: vec3f, normal: vec3f) -> vec3f {
-    if shade_light.kind == SHADE_RECT {
+    if shade_choice(shade_light.kind) == SHADE_RECT {
         return shade_rect_irradiance(point, normal);
     }
     let color = shade_light.color * shade_tint(point);
-    if shade_light.kind == SHADE_DIRECTIONAL {
+    if shade_choice(shade_light.kind) == SHADE_DIRECTIONAL {
         return color * shade_cosine(normal, shade_light.direction);
     }
     let incident = shade_from(shade_light.position, point);
     var falloff = shade_cosine(normal, incident.direction);
-    if shade_light.kind == SHADE_SPOT {
+    if shade_choice(shade_light.kind) == SHADE_SPOT {
         falloff *= shade_spot_falloff(dot(incident.direction, shade_light.direction));
     }
     return color * incident.irradiance * falloff;
@@ -143,7 +143,7 @@ fn shade_direct(point: vec3f, normal: vec3f) -> vec3f {
 fn shade_ambient(point: vec3f, normal: vec3f) -> vec3f {
     let ambient = shade_view.ambient * (1.0 + shade_view.ambient_tilt * normal.y);
     let color = ambient * shade_light.color;
-    if shade_light.kind == SHADE_DIRECTIONAL {
+    if shade_choice(shade_light.kind) == SHADE_DIRECTIONAL {
         return color;
     }
     let area = length(cross(shade_light.edge_x, shade_light.edge_y));

@@ -5,7 +5,7 @@
 
 // The face whose axis is nearest to the direction from the light.
 fn shade_shadow_face(point: vec3f) -> u32 {
-    if shade_light.faces == 1u {
+    if shade_choice(shade_light.faces) == 1u {
         return 0u;
     }
     let q = point - shade_light.position;
@@ -38,7 +38,7 @@ fn shade_hides(held: f32, depth: f32) -> bool {
 fn shade_texel_tint(face: u32, texel: vec2f, depth: f32) -> vec3f {
     let last = vec2f(textureDimensions(shade_shadow_map)) - 1.0;
     let clamped = clamp(texel, vec2f(0.0), last);
-    if shade_light.faces == 1u && any(clamped != texel) {
+    if shade_choice(shade_light.faces) == 1u && any(clamped != texel) {
         return vec3f(1.0);
     }
     let index = vec2u(clamped);
@@ -46,8 +46,9 @@ fn shade_texel_tint(face: u32, texel: vec2f, depth: f32) -> vec3f {
         return vec3f(0.0);
     }
     var tint = vec3f(1.0);
-    for (var layer = 0u; layer < shade_light.glass_layers; layer++) {
-        let glass = textureLoad(shade_glass, index, face * shade_light.glass_layers + layer, 0).rg;
+    let layers = shade_choice(shade_light.glass_layers);
+    for (var layer = 0u; layer < layers; layer++) {
+        let glass = textureLoad(shade_glass, index, face * layers + layer, 0).rg;
         if shade_hides(bitcast<f32>(glass.r), depth) {
             let roots = vec3f((vec3u(glass.g) >> vec3u(0u, 10u, 20u)) & vec3u(1023u)) / 1023.0;
             tint *= roots * roots;
@@ -58,7 +59,7 @@ fn shade_texel_tint(face: u32, texel: vec2f, depth: f32) -> vec3f {
 
 // What light that reaches a surface is multiplied by: four texels, weighted bilinearly.
 fn shade_visibility(surface: vec3f, normal: vec3f) -> vec3f {
-    if shade_light.faces == 0u {
+    if shade_choice(shade_light.faces) == 0u {
         return vec3f(1.0);
     }
     let point = surface + shade_view.normal_offset * shade_texel_size(surface) * normal;

@@ -39,6 +39,12 @@ struct ShadeView {
 @group(0) @binding(4) var shade_emissive: texture_2d<f32>;
 @group(0) @binding(5) var shade_view_tint: texture_2d<f32>;
 
+// A small number from a uniform that decides which way a shader goes. lavapipe compiles a shader anew, whenever it is bound,
+// for the uniforms that all of a branch hangs on; of a texture's size it knows nothing.
+fn shade_choice(value: u32) -> u32 {
+    return min(value, 0xffffu * textureDimensions(shade_depth).x);
+}
+
 // One triangle over the whole picture.
 @vertex
 fn shade_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -61,10 +67,8 @@ fn shade_across(pixel: vec2u) -> vec3f {
 
 // Unit direction of the pixel's view ray.
 fn shade_direction(pixel: vec2u) -> vec3f {
-    if shade_view.orthographic == 1u {
-        return shade_view.forward;
-    }
-    return normalize(shade_view.forward + shade_across(pixel));
+    let across = select(shade_across(pixel), vec3f(0.0), shade_view.orthographic == 1u);
+    return normalize(shade_view.forward + across);
 }
 
 // The point that a pixel sees [m].
@@ -72,11 +76,11 @@ fn shade_point(pixel: vec2u, from_far: f32) -> vec3f {
     let near = shade_view.near;
     let far = shade_view.far;
     let across = shade_across(pixel);
-    if shade_view.orthographic == 1u {
+    if shade_choice(shade_view.orthographic) == 1u {
         return (far + from_far * (near - far)) * shade_view.forward + across;
     }
     let along = shade_view.forward + across;
-    if shade_view.depth_range == 2u {
+    if shade_choice(shade_view.depth_range) == 2u {
         return near / max(from_far, near / far) * along;
     }
     return near * far / (near + from_far * (far - near)) * along;

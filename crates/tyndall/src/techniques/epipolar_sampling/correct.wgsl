@@ -19,10 +19,7 @@ fn correct(@builtin(global_invocation_id) id: vec3u) {
     }
     let packed = correct_list[id.x];
     let target_pixel = vec2u(packed & 0xffffu, packed >> 16u);
-    var pixel = target_pixel;
-    if correct_params.downscale > 1u {
-        pixel = coarse_pixel(target_pixel);
-    }
+    let pixel = select(target_pixel, coarse_pixel(target_pixel), correct_params.downscale > 1u);
     let place = vec2f(pixel) + 0.5;
     let ray = camera_ray_to(place, textureLoad(correct_linear_depth, pixel, 0).r);
     // Alpha marks it for the debug views.

@@ -18,8 +18,9 @@ fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let left = transmittance(frame.medium.sigma_t, ray.length);
     let mean_left = dot(left, vec3f(1.0 / 3.0));
     let found = textureLoad(finish_in_scatter, pixel, 0);
-    if sampling.show != FINISH_LIGHT {
-        return vec4f(finish_view(position.xy, found), mean_left);
+    let show = frame_choice(sampling.show);
+    if show != FINISH_LIGHT {
+        return vec4f(finish_view(position.xy, found, show), mean_left);
     }
     var radiance = found.rgb * unshadowed_from(ray, left);
     if !light_is_local() {
@@ -28,9 +29,9 @@ fn finish(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return vec4f(textureLoad(frame_lights_before, pixel, 0).rgb + radiance, mean_left);
 }
 
-fn finish_view(place: vec2f, found: vec4f) -> vec3f {
-    switch sampling.show {
-        case FINISH_SAMPLES, FINISH_DEPTH_BREAKS: { return finish_sample_view(place); }
+fn finish_view(place: vec2f, found: vec4f, show: u32) -> vec3f {
+    switch show {
+        case FINISH_SAMPLES, FINISH_DEPTH_BREAKS: { return finish_sample_view(place, show); }
         case FINISH_CORRECTED: { return select(vec3f(1.0, 0.0, 0.0), vec3f(0.2), found.a > 0.5); }
         default: { return found.rgb; }
     }
@@ -38,7 +39,7 @@ fn finish_view(place: vec2f, found: vec4f) -> vec3f {
 
 // Pixels that hold a sample of the nearest slice: white where it was marched, blue where it was interpolated; of the
 // breaks only those that are marched because of one.
-fn finish_sample_view(place: vec2f) -> vec3f {
+fn finish_sample_view(place: vec2f, show: u32) -> vec3f {
     let slices = sampling_slices(place);
     let slice = select(slices.first, slices.second, slices.share >= 0.5);
     let line = finish_lines[slice];
@@ -49,7 +50,7 @@ fn finish_sample_view(place: vec2f) -> vec3f {
     }
     let source = finish_sources[slice * sampling.samples + u32(sample)] & 0xffffu;
     let is_marched = source == u32(sample);
-    if sampling.show == FINISH_DEPTH_BREAKS {
+    if show == FINISH_DEPTH_BREAKS {
         return vec3f(f32(is_marched && u32(sample) % sampling.initial_step != 0u));
     }
     return select(vec3f(0.0, 0.0, 0.4), vec3f(1.0), is_marched);

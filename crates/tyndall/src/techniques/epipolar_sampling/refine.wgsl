@@ -36,7 +36,7 @@ fn refine_differ(slice: u32, sample: u32, depth: f32, next: f32) -> bool {
     if depth < 0.0 || next < 0.0 {
         return depth != next;
     }
-    if sampling.criterion == SAMPLING_CRITERION_DEPTH {
+    if frame_choice(sampling.criterion) == SAMPLING_CRITERION_DEPTH {
         return abs(depth - next) > sampling.threshold * min(depth, next);
     }
     let line = refine_lines[slice];

@@ -43,7 +43,7 @@ fn tree_union(a: vec2f, b: vec2f) -> vec2f {
 }
 
 fn tree_child(row: u32, trace: Trace, index: u32) -> vec2f {
-    if tree_params.base > 0u {
+    if frame_choice(tree_params.base) > 0u {
         let count = sampling.columns >> tree_params.base;
         return select(TREE_NOTHING, tree_nodes[row * sampling.columns + count + index], index < count);
     }

@@ -31,7 +31,7 @@ fn hybrid(@builtin(position) position: vec4f) -> @location(0) vec4f {
 // The stretch [m] that holds every shadow on the ray; empty where x >= y.
 fn hybrid_shaded(ray: Ray, bounds: vec3f) -> vec2f {
     let whole = vec2f(0.0, ray.length);
-    let is_flat = (frame.camera.flags & CAMERA_ORTHOGRAPHIC) != 0u;
+    let is_flat = camera_is_orthographic();
     let runs_along = !light_is_local() && abs(dot(ray.direction, light.direction)) > HYBRID_PARALLEL;
     if hybrid_params.bounds == HYBRID_NONE {
         return vec2f(ray.length);

@@ -158,10 +158,10 @@ fn light_volume_texel_glass(ray: Ray, walk: LightVolumeWalk, texel: vec2u, span:
     var sum = vec3f(0.0);
     var s = span.x;
     // A stretch ends where the shadow begins or a pane is passed.
-    for (var i = 0u; i <= light.glass_layers + 1u && s < span.y; i++) {
+    for (var i = 0u; i <= shadow_glass_layers() + 1u && s < span.y; i++) {
         var end = min(span.y, light_volume_next_depth(walk, held, s));
-        for (var layer = 0u; layer < light.glass_layers; layer++) {
-            let glass = textureLoad(shadow_glass, texel, walk.face * light.glass_layers + layer, 0).x;
+        for (var layer = 0u; layer < shadow_glass_layers(); layer++) {
+            let glass = textureLoad(shadow_glass, texel, walk.face * shadow_glass_layers() + layer, 0).x;
             end = min(end, light_volume_next_depth(walk, bitcast<f32>(glass), s));
         }
         let p = walk.c0 + 0.5 * (s + end) * walk.c1;

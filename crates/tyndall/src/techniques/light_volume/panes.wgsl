@@ -17,8 +17,8 @@ fn light_volume_find_panes(
     var is_tinted = false;
     for (var y = first.y; y < min(LIGHT_VOLUME_BLOCK * (block.y + 1u), size.y); y += 8u) {
         for (var x = first.x; x < min(LIGHT_VOLUME_BLOCK * (block.x + 1u), size.x); x += 8u) {
-            for (var layer = 0u; layer < light.glass_layers; layer++) {
-                let glass = textureLoad(shadow_glass, vec2u(x, y), block.z * light.glass_layers + layer, 0);
+            for (var layer = 0u; layer < shadow_glass_layers(); layer++) {
+                let glass = textureLoad(shadow_glass, vec2u(x, y), block.z * shadow_glass_layers() + layer, 0);
                 is_tinted |= (glass.y & 0x3fffffffu) != 0x3fffffffu;
             }
         }

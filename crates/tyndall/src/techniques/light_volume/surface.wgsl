@@ -13,7 +13,7 @@ fn light_volume_project(point: vec3f) -> LightVolumeVertex {
     let camera = frame.camera;
     let on_plane = vec2f(dot(camera.right, point), dot(camera.up, point));
     let depth = dot(camera.forward, point);
-    if (camera.flags & CAMERA_ORTHOGRAPHIC) != 0u {
+    if camera_is_orthographic() {
         return LightVolumeVertex(vec4f((on_plane - camera.center) / camera.half_extent, 0.5, 1.0), depth);
     }
     let clip = (on_plane - depth * camera.center) / camera.half_extent;

@@ -25,7 +25,7 @@ fn tint_rows(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
     let row = tint_index(epipolar, slice, group.y, 0u);
     let alpha = epipolar.alpha_start + (f32(slice) + 0.5) * epipolar.alpha_step;
     let outward = epipolar_outward(epipolar, alpha);
-    let count = epipolar.tint_columns / TINT_THREADS;
+    let count = frame_choice(epipolar.tint_columns / TINT_THREADS);
     let first = count * thread;
     var total = vec3f(0.0);
     for (var i = 0u; i < count; i++) {

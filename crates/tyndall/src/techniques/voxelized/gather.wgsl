@@ -61,18 +61,19 @@ fn gather_border(place: EpipolarRay, column: u32, span: vec2f) -> f32 {
 // The rays of the axis are light rays: from the sun one, from a lamp one to either side of it. Those through the ends of
 // the view ray stand for them (Wyman and Dai 2013, section 5).
 fn gather_by_distance(ray: Ray, span: vec2f) -> vec3f {
+    let most = frame_choice(epipolar.samples);
     if !light_is_local() {
         let end = light_ray_end(shadow_line(ray.origin, light.direction));
         let is_along = dot(ray.direction, light.direction) > 0.0;
         let lit = select(vec2f(max(span.x, -end), span.y), vec2f(span.x, min(span.y, end)), is_along);
-        return gather_stretch(ray, lit.x, lit.y, epipolar.samples);
+        return gather_stretch(ray, lit.x, lit.y, most);
     }
     let nearest = dot(light.position - ray.origin, ray.direction);
     let ends = vec2f(gather_end_towards(ray, span.x), gather_end_towards(ray, span.y));
     let before = vec2f(max(span.x, nearest - ends.x), min(span.y, nearest));
     let behind = vec2f(max(span.x, nearest), min(span.y, nearest + ends.y));
-    return gather_stretch(ray, before.x, before.y, epipolar.samples)
-        + gather_stretch(ray, behind.x, behind.y, epipolar.samples);
+    return gather_stretch(ray, before.x, before.y, most)
+        + gather_stretch(ray, behind.x, behind.y, most);
 }
 
 // Distance [m] to the end of the lamp's ray through a point of the view ray.

@@ -12,7 +12,7 @@ use crate::{
     epipolar::gpu::EPIPOLAR,
     frame::{Frame, Medium},
     gpu::{
-        shader::{FRAME_MODULES, LIGHT_MODULES},
+        shader::{CHOICE, CHOICE_ALONE, FRAME_MODULES, LIGHT_MODULES},
         uniforms::{FrameUniform, LightUniform, LightVariant},
     },
     shadow::{depths::DepthRanges, pyramid::PYRAMID},
@@ -41,7 +41,7 @@ impl Blocks {
             technique: Technique::default(),
         };
         let rays = case.rays();
-        let (light, variant) = LightUniform::new(&case.light, rays.eye, None);
+        let (light, variant) = LightUniform::new(&case.light, rays.eye, false);
         let uniform = |contents: &[u8]| {
             gpu.device
                 .create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -72,7 +72,7 @@ impl Blocks {
             constant("SHADOW_KIND", shadow),
         ];
         let in_group_0 = |module: &&str| {
-            let mut module = module.to_string();
+            let mut module = module.replace(CHOICE, CHOICE_ALONE);
             for group in [1, 2] {
                 let from = format!("@group({group}) @binding(");
                 module = module.replace(&from, &format!("@group(0) @binding({group}"));
