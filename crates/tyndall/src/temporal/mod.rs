@@ -11,7 +11,7 @@
 //! - **change** (default): needs no geometry. The shadow map and the depth buffer are compared with those of the frame
 //!   before. A pixel is stale where its depth changed, or where its ray passes a shadow-map texel whose visibility changed,
 //!   at a depth between the old and the new one. The texels' depth ranges are kept in a pyramid of blocks of 8 x 8; the beam
-//!   of a tile of 8 x 8 pixels is held against it in 128 slabs. All is rounded outwards: **a kept pixel is bit by bit what
+//!   of a tile of 8 x 8 pixels is held against it in 16 slabs, and those that meet a change in 8 parts each. All is rounded outwards: **a kept pixel is bit by bit what
 //!   computing it again would give**, for any number of frames.
 //! - **geometry**: the thesis's own. Moving occluders ([`LightInputs::occluders`](crate::LightInputs)) and their shadow
 //!   volumes are drawn where they were in the frame before and where they are now. Pixels may be lost: those whose shadows

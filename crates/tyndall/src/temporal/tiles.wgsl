@@ -1,5 +1,6 @@
-// Which pixels are stale. A tile of 8 x 8 pixels is asked as one: 128 slabs of the beam that its rays fill, two by each
-// invocation, are held against the blocks of the shadow map that changed. Depth is compared pixel by pixel.
+// Which pixels are stale. A tile of 8 x 8 pixels is asked as one: 16 slabs of the beam that its rays fill are held against the
+// blocks of the shadow map that changed, then each of the eight parts of those that meet a change. Depth is compared pixel
+// by pixel.
 
 @group(2) @binding(1) var<storage, read_write> tiles_state: ReuseState;
 @group(2) @binding(2) var<storage, read> tiles_blocks: array<vec2f>;
@@ -9,7 +10,8 @@
 @group(2) @binding(6) var tiles_witness: texture_2d<f32>;
 
 const TILES_SIDE: u32 = 8u;
-const TILES_SLABS: f32 = 128.0;
+const TILES_SLABS: u32 = 16u;
+const TILES_PARTS: u32 = 8u;
 // Blocks a side that a slab is held against at most, less one.
 const TILES_SPAN: u32 = 3u;
 // Rounding of places on the map [texels] and of depths, absolute and relative.
@@ -17,6 +19,7 @@ const TILES_TEXELS: f32 = 1.0;
 const TILES_DEPTH: vec2f = vec2f(2e-6, 1e-5);
 
 var<workgroup> tiles_farthest: atomic<u32>;
+var<workgroup> tiles_near: atomic<u32>; // a bit a slab
 var<workgroup> tiles_touched: atomic<u32>;
 var<workgroup> tiles_stale: atomic<u32>;
 
@@ -36,15 +39,22 @@ fn tiles(
         is_stale = tiles_pixel_changed(pixel, place, depth);
     }
     workgroupBarrier();
-    // Once a slab meets a change, the whole tile is stale.
-    if reuse.mask == REUSE_CHANGE && reuse.faces > 0u {
-        let farthest = bitcast<f32>(atomicLoad(&tiles_farthest));
-        for (var half = 0u; half < 2u; half++) {
-            let first = f32(2u * lane + half);
-            let slab = farthest * vec2f(first, first + 1.0) / TILES_SLABS;
-            if tiles_slab_changed(vec2f(TILES_SIDE * tile.xy), slab) {
-                atomicStore(&tiles_touched, 1u);
-            }
+    let corner = vec2f(TILES_SIDE * tile.xy);
+    let farthest = bitcast<f32>(atomicLoad(&tiles_farthest));
+    let slabs = select(0u, TILES_SLABS, reuse.mask == REUSE_CHANGE);
+    for (var i = lane; i < slabs; i += TILES_SIDE * TILES_SIDE) {
+        if tiles_slab_changed(corner, farthest * vec2f(f32(i), f32(i + 1u)) / f32(TILES_SLABS)) {
+            atomicOr(&tiles_near, 1u << i);
+        }
+    }
+    workgroupBarrier();
+    // Once a part meets a change, the whole tile is stale.
+    let near = atomicLoad(&tiles_near);
+    let parts = TILES_PARTS * countOneBits(near);
+    for (var i = lane; i < parts; i += TILES_SIDE * TILES_SIDE) {
+        let first = f32(TILES_PARTS * tiles_bit(near, i / TILES_PARTS) + i % TILES_PARTS);
+        if tiles_slab_changed(corner, farthest * vec2f(first, first + 1.0) / f32(TILES_PARTS * TILES_SLABS)) {
+            atomicStore(&tiles_touched, 1u);
         }
     }
     workgroupBarrier();
@@ -62,6 +72,15 @@ fn tiles(
             atomicAdd(&tiles_state.stale, stale);
         }
     }
+}
+
+// The place of a number's bit `index`, of those that are set.
+fn tiles_bit(bits: u32, index: u32) -> u32 {
+    var left = bits;
+    for (var i = 0u; i < index; i++) {
+        left &= left - 1u;
+    }
+    return firstTrailingBit(left);
 }
 
 // Whether what the pixel's last pass reads of this very pixel has changed; remembers it.
