@@ -160,6 +160,26 @@ fn shadow_glass_texel_tint(texel: vec2u, face: u32, depth: f32) -> vec3f {
     return tint;
 }
 
+// Where a ray of these (z, w) at distance 0 and a metre, over one texel, comes to a depth past what the map holds, after
+// distance s; beyond all distances where it does not.
+fn shadow_next_depth(zw: vec2f, slope: vec2f, held: f32, s: f32) -> f32 {
+    let depth = select(held, 1.0 - held, light.standard_depth == 1u);
+    let divisor = slope.x - depth * slope.y;
+    let crossing = (depth * zw.y - zw.x) / divisor;
+    return select(1e30, crossing, divisor != 0.0 && crossing > s);
+}
+
+// Where it passes a layer of glass.
+fn shadow_glass_next(texel: vec2u, face: u32, zw: vec2f, slope: vec2f, s: f32) -> f32 {
+    let layers = shadow_glass_layers();
+    var next = 1e30;
+    for (var layer = 0u; layer < layers; layer++) {
+        let glass = textureLoad(shadow_glass, texel, face * layers + layer, 0).x;
+        next = min(next, shadow_next_depth(zw, slope, bitcast<f32>(glass), s));
+    }
+    return next;
+}
+
 // Depth of the nearest layer that tints, 1 nearest to the light; 0 where none does.
 fn shadow_glass_nearest(texel: vec2u, face: u32) -> f32 {
     for (var layer = 0u; layer < shadow_glass_layers(); layer++) {

@@ -10,6 +10,9 @@ struct ShadowWalk {
     next: vec2f, // distances where the next column and the next row begin
 }
 
+// A cube's face is left this far beyond its border [texels], for a ray along the border not to go to and fro.
+const SHADOW_WALK_RIM: f32 = 0.05;
+
 // Right, down and outwards on a cube's face.
 fn shadow_on_face(q: vec3f, face: u32) -> vec3f {
     switch face {
@@ -41,21 +44,29 @@ fn shadow_walk_from(map_ray: ShadowRay, size: vec2f, probe: f32) -> ShadowWalk {
     if SHADOW_KIND == SHADOW_CUBE {
         texel = clamp(texel, vec2i(0), vec2i(size) - 1);
     }
-    return shadow_walk_next(ShadowWalk(c0, c1, texel, face, size, vec2f(0.0)));
+    let walk = shadow_walk_next(ShadowWalk(c0, c1, texel, face, size, vec2f(0.0)));
+    // Whatever rounding says, the way is onwards.
+    return ShadowWalk(c0, c1, texel, face, size, max(walk.next, vec2f(probe)));
 }
 
 fn shadow_walk_way(walk: ShadowWalk) -> vec2i {
     return vec2i(sign(walk.c1.xy * walk.c0.w - walk.c0.xy * walk.c1.w));
 }
 
+// Where a texel's border [texels] is crossed.
+fn shadow_walk_border(walk: ShadowWalk, border: vec2f) -> vec2f {
+    let rim = select(0.0, SHADOW_WALK_RIM, SHADOW_KIND == SHADOW_CUBE);
+    return border + select(vec2f(0.0), vec2f(rim), border >= walk.size) - select(vec2f(0.0), vec2f(rim), border <= vec2f(0.0));
+}
+
 fn shadow_walk_next(walk: ShadowWalk) -> ShadowWalk {
     let way = shadow_walk_way(walk);
-    let border = vec2f(walk.texel + max(way, vec2i(0)));
+    let border = shadow_walk_border(walk, vec2f(walk.texel + max(way, vec2i(0))));
     let slope = walk.c1.xy - border * walk.c1.w;
     let crossing = (border * walk.c0.w - walk.c0.xy) / slope;
     // In perspective a ray may end at its vanishing point before it comes to the border.
     let is_ahead = slope * vec2f(way) > vec2f(0.0);
-    let is_border = is_ahead & (border >= vec2f(0.0)) & (border <= walk.size);
+    let is_border = is_ahead & (border >= vec2f(-SHADOW_WALK_RIM)) & (border <= walk.size + SHADOW_WALK_RIM);
     var next = walk;
     next.next = select(vec2f(1e30), crossing, is_border);
     return next;

@@ -142,14 +142,6 @@ fn light_volume_block_glass(ray: Ray, walk: LightVolumeWalk) -> vec3f {
     return sum;
 }
 
-// Where the ray crosses a depth of a texel, after s.
-fn light_volume_next_depth(walk: LightVolumeWalk, held: f32, s: f32) -> f32 {
-    let depth = select(held, 1.0 - held, light.standard_depth == 1u);
-    let slope = walk.c1.z - depth * walk.c1.w;
-    let crossing = (depth * walk.c0.w - walk.c0.z) / slope;
-    return select(1e30, crossing, slope != 0.0 && crossing > s);
-}
-
 fn light_volume_texel_glass(ray: Ray, walk: LightVolumeWalk, texel: vec2u, span: vec2f) -> vec3f {
     let middle = light_volume_cell_place(walk, vec2f(1.0), 0.5 * (span.x + span.y));
     let map_size = vec2f(textureDimensions(shadow_map));
@@ -159,11 +151,8 @@ fn light_volume_texel_glass(ray: Ray, walk: LightVolumeWalk, texel: vec2u, span:
     var s = span.x;
     // A stretch ends where the shadow begins or a pane is passed.
     for (var i = 0u; i <= shadow_glass_layers() + 1u && s < span.y; i++) {
-        var end = min(span.y, light_volume_next_depth(walk, held, s));
-        for (var layer = 0u; layer < shadow_glass_layers(); layer++) {
-            let glass = textureLoad(shadow_glass, texel, walk.face * shadow_glass_layers() + layer, 0).x;
-            end = min(end, light_volume_next_depth(walk, bitcast<f32>(glass), s));
-        }
+        var end = min(span.y, shadow_next_depth(walk.c0.zw, walk.c1.zw, held, s));
+        end = min(end, shadow_glass_next(texel, walk.face, walk.c0.zw, walk.c1.zw, s));
         let p = walk.c0 + 0.5 * (s + end) * walk.c1;
         let depth = p.z / max(p.w, 1e-30);
         if shadow_reaches(depth, held) {

@@ -61,7 +61,7 @@ fn glass_covered(view: TraverseRay, stretch: vec2f) -> vec2f {
     return select(stretch.yy, covered, covered.x < covered.y);
 }
 
-// Texel by texel.
+// Texel by texel, and before and behind each layer of a texel's glass.
 fn glass_walk(view: TraverseRay, a: f32, b: f32) -> vec3f {
     let size = textureDimensions(shadow_glass);
     var walk = shadow_walk_from(view.map_ray, vec2f(size), a);
@@ -71,14 +71,18 @@ fn glass_walk(view: TraverseRay, a: f32, b: f32) -> vec3f {
         if s >= b {
             break;
         }
-        let end = clamp(shadow_walk_end(walk), s, b);
+        // By rounding alone outside the map, where it covers the ray.
+        let texel = vec2u(clamp(walk.texel, vec2i(0), vec2i(size) - 1));
+        let passed = shadow_glass_next(texel, walk.face, walk.c0.zw, walk.c1.zw, s);
+        let leaves = shadow_walk_end(walk);
+        let end = clamp(min(leaves, passed), s, b);
         let middle = 0.5 * (s + end);
         let zw = walk.c0.zw + middle * walk.c1.zw;
-        let texel = vec2u(clamp(walk.texel, vec2i(0), vec2i(size) - 1));
-        // By rounding alone outside the map, where it covers the ray.
         let tint = shadow_glass_texel_tint(texel, walk.face, zw.x / zw.y);
         sum += tint * light_ray_tint(view.ray.origin + middle * view.ray.direction) * tint_even(view.ray, s, end);
-        walk = shadow_walk_on(view.map_ray, walk, end);
+        if end >= leaves {
+            walk = shadow_walk_on(view.map_ray, walk, end);
+        }
         s = end;
     }
     return sum;
