@@ -13,7 +13,16 @@ const STRETCH_PANEL: f32 = 0.5;
 fn stretch_light(ray: Ray) -> AirlightLight {
     let to_light = light.position - ray.origin;
     let projection = dot(to_light, ray.direction);
-    return AirlightLight(projection, max(length(to_light - projection * ray.direction), LIGHT_RADIUS));
+    return AirlightLight(projection, stretch_height(length(to_light - projection * ray.direction)));
+}
+
+// Closed forms know of no radius inside which 1 / d^2 grows no further. A ray that comes as near as h < r sees
+// 2 atan(h / x) / h + 2 x / r^2 of it, x^2 = r^2 - h^2; of no radius, at this height, as much: pi / height.
+fn stretch_height(h: f32) -> f32 {
+    let near = clamp(h, 1e-6 * LIGHT_RADIUS, LIGHT_RADIUS);
+    let x = sqrt(LIGHT_RADIUS * LIGHT_RADIUS - near * near);
+    let seen = 2.0 * atan2(near, x) / near + 2.0 * x / (LIGHT_RADIUS * LIGHT_RADIUS);
+    return max(h, PI / seen);
 }
 
 // Chen 2011, eq. 1 over the distances a..b [m], unshadowed: radiance [W/(m^2 sr)]. Zero where a >= b.
