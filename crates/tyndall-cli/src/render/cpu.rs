@@ -37,7 +37,7 @@ pub(super) fn render(
     };
     let surface = if needs.surface {
         stages.run("shade surfaces", |_| {
-            shade(&g_buffer, &setup.frame, &lights)
+            shade(&g_buffer, &setup.frame, &lights, Some(&**setup.tracer))
         })
     } else {
         Vec::new()

@@ -7,7 +7,10 @@ use tyndall::{
     techniques::Technique,
 };
 use tyndall_scene::{
-    gpu::{GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget, upload_light_texture},
+    gpu::{
+        GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget, SurfaceLights,
+        upload_light_texture,
+    },
     shading::shade,
     trace::{GBuffer, GLASS_LAYERS, Tracer},
 };
@@ -47,10 +50,14 @@ fn lit_surfaces_are_the_cpus() {
         for (name, light, maps) in &lights {
             let frame = frame(camera, *light);
             record(gpu, |encoder| {
-                renderer.shade(encoder, &view, &g_buffer, &frame, &[maps.gpu()], None);
+                let lights = SurfaceLights {
+                    inputs: &[maps.gpu()],
+                    visibility: &[],
+                };
+                renderer.shade(encoder, &view, &g_buffer, &frame, lights, None);
             });
             let found = channels(&read(gpu, &target), 4, 3);
-            let expected = shade(&cpu_g_buffer, &frame, &[maps.cpu()]).concat();
+            let expected = shade(&cpu_g_buffer, &frame, &[maps.cpu()], None).concat();
             assert!(found.iter().all(|v| v.is_finite()));
             let error = rel_mae(&found, &expected, size);
             // lavapipe: 4.0e-4 at most with a shadow map, where a texel's depth is that of the point itself within

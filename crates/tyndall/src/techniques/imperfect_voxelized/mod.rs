@@ -30,6 +30,19 @@
 //!   alike; `"quarter"` gathers one pixel of 2 x 2. Errors there: 0.0184 and 0.0194.
 //! - A ray near a sample's axis compares distances in the sample's map, as `vsv` does.
 //!
+//! # Shadows on surfaces
+//!
+//! Where they are asked for ([`EffectView::set_surface_shadows`](crate::EffectView::set_surface_shadows)), two more passes read
+//! the same voxels: **light surfaces** adds up what every sample would send to the end of a pixel's ray, and what of it
+//! arrives, and **resolve surfaces** divides the one by the other. A voxel is interpolated between two slices and two columns, not
+//! between rows, along which a shadow has one edge (section 3.3). Pixels take samples as `gather` says. Lest surfaces shadow
+//! themselves, points are moved one row, and one texel of the sample's map and as far again as the surface slopes in it,
+//! towards the sample; moved off their surfaces or by the paper's fixed biases, shadows on a floor were displaced or came off.
+//!
+//! Relative error of the lit surfaces of the donuts against tracing 256 samples, 160 x 120 pixels: 0.081; with maps of 256^2
+//! texels 0.068; unshadowed 0.196. Nearly all of that is creases smaller than three texels of a map, which leak. It costs half as
+//! much time as gathering the volume's light (0.46 s of 0.99 s there, on the software driver), and nothing where nobody asks.
+//!
 //! # Error
 //!
 //! Against ray-traced truth (256 samples of its own), donuts and a dragon under a ceiling panel, 80 x 60 pixels; maps of as many
@@ -76,11 +89,13 @@
 //!
 //! # Where it fails
 //!
-//! Surfaces thinner than the cloud is dense leak; occluders nearer to the light than some twenty times the distance between points
+//! Surfaces thinner than the cloud is dense leak; so do shadows on surfaces within three texels of what casts them; occluders nearer to the light than some twenty times the distance between points
 //! grow fat or get holes. Coloured glass tints nothing. Rays through the light itself show its samples. On the CPU it is refused by name.
 
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
+#[cfg(feature = "gpu")]
+mod surface;
 
 use super::{
     Backends, LightKind, Technique, TechniqueInfo,
