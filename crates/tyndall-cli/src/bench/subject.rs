@@ -1,6 +1,9 @@
 //! What the papers rendered: their scenes where those are at hand, else a built-in scene of the same kind.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use glam::Vec3;
 use tyndall::{
@@ -238,7 +241,7 @@ fn with_picture(setup: &Setup, picture: LightTexture) -> Setup {
             edge_x: (2.0 * radius * x).to_array(),
             edge_y: (2.0 * radius * y).to_array(),
         });
-        extra.texture = Some(picture);
+        extra.texture = Some(Arc::new(picture));
     }
     setup
 }

@@ -149,7 +149,7 @@ pub(crate) fn light_inputs<'a>(setup: &'a Setup, maps: &'a [LightMaps]) -> Vec<C
         .map(|(maps, light)| CpuLightInputs {
             shadow_map: maps.shadow_map.as_ref(),
             glass: maps.glass.as_ref(),
-            texture: light.texture.as_ref(),
+            texture: light.texture.as_deref(),
         })
         .collect()
 }

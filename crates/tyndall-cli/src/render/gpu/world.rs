@@ -55,7 +55,7 @@ impl World {
             if !targets.suits(&setup.frame.lights[index], needs) {
                 *targets = LightTargets::new(setup, index, gpu, &self.renderer, needs)?;
             }
-            targets.follow(setup, index, gpu, needs);
+            targets.follow(setup, index, gpu, needs)?;
         }
         Ok(())
     }
