@@ -709,3 +709,16 @@ fn a_rectangular_light_that_moves_is_the_same_as_one_that_is_there() {
         assert_eq!(read("alone3.exr"), read("f3.exr"), "{technique}");
     }
 }
+
+#[test]
+fn glass_that_has_no_effect_is_said() {
+    let shot = area_shot(PANEL).replace("builtin:empty", "builtin:church");
+    let folder = folder_with("shot.toml", shot);
+    for technique in area_techniques("glass before a rectangular light on the GPU") {
+        let output = in_scatter(folder.path(), technique, None, "a.exr");
+        let said = stderr(&output);
+        assert!(output.status.success(), "{said}");
+        let is_said = said.contains("note: on the GPU coloured glass tints no light of rectangles");
+        assert_eq!(is_said, technique == "ivsv", "{said}");
+    }
+}

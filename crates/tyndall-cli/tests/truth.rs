@@ -49,17 +49,17 @@ const COARSE: &[(&str, &str, &[&str], f64)] = &[
     ("sibenik-rose", "vsv", &[], 0.12),             // 0.0864
     ("sibenik-sun", "vsv", &[], 0.1),               // 0.0753
     ("terrain-sun", "vsv", &[], 0.002),             // 0.00120
-    ("donuts-rect", "ivsv", &[], 0.02),             // 0.0147
+    ("donuts-rect", "ivsv", &[], 0.02),             // 0.0152
     ("donuts-rect", "ray-march", AREA_STEPS, 0.02), // 0.0150
 ];
 
 /// Of each sample of a rectangle.
 const AREA_STEPS: &[&str] = &["--set", "technique.steps=64"];
 
-/// A shot with a rectangular light, and how far its lit surfaces by `ivsv` may be from traced ones (relMAE): 0.0819 measured on
+/// A shot with a rectangular light, and how far its lit surfaces by `ivsv` may be from traced ones (relMAE): 0.0739 measured on
 /// llvmpipe; without shadows they are 0.196 apart.
 const SURFACE_SHOT: &str = "donuts-rect";
-const SURFACES_APART: f64 = 0.11;
+const SURFACES_APART: f64 = 0.1;
 
 /// How far GPU and CPU may be apart (relMAE): f32 against f64, a rasterised shadow map against a ray-cast one.
 /// Measured: at most 0.00017, on sibenik-rose.

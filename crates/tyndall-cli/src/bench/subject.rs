@@ -102,7 +102,11 @@ pub(super) const DONUTS_RECT: Subject = subject(
 /// How files of scenes begin that are made by code.
 const BUILTIN: &str = "builtin:";
 
-pub(super) const HAIRBALL: Subject = subject("hairball", None, "builtin:hairball");
+pub(super) const HAIRBALL: Subject = subject(
+    "hairball",
+    asset!("builtin:hairball", "hairball-rect"),
+    "builtin:hairball",
+);
 pub(super) const ANGEL_RECT: Subject =
     subject("angel", asset!("angel.glb", "angel-rect"), "builtin:slats");
 pub(super) const CITY_RECT: Subject =
