@@ -672,6 +672,40 @@ mod tests {
         );
     }
 
+    /// Under a plate that hides it: dark in the middle, half lit where the plate's edge halves it, lit far away.
+    #[test]
+    fn a_rectangle_casts_a_soft_shadow() {
+        let rect = Emitter::Rect {
+            center: [0.0, 10.0, 0.0],
+            edge_x: [0.2, 0.0, 0.0],
+            edge_y: [0.0, 0.0, 0.2],
+            radiance: [100.0; 3],
+            samples: 256,
+        };
+        // Above the camera, so that it hides nothing of the ground.
+        let plate = quad(vec3(-0.1, 8.0, -0.1), 0.2 * Vec3::X, 0.2 * Vec3::Z);
+        let open = picture(&opaque(&ground()), rect, None, 0.0);
+        let hidden = picture(
+            &opaque(&[ground(), plate.to_vec()].concat()),
+            rect,
+            None,
+            0.0,
+        );
+        let seen = |x: f64| {
+            let pixel = (0..hidden.len())
+                .min_by_key(|i| {
+                    (1e6 * (ground_point(*i) - DVec3::new(x, 0.0, 0.0)).length()) as u64
+                })
+                .unwrap();
+            let ambient = AMBIENT_UP / (1.0 + AMBIENT_UP);
+            (hidden[pixel].x / open[pixel].x - ambient) / (1.0 - ambient)
+        };
+        // The umbra ends at 0.1, the penumbra at 0.9; pixels are 0.125 m.
+        assert!(seen(0.0).abs() < 0.01, "{}", seen(0.0));
+        assert!((seen(0.5) - 0.5).abs() < 0.15, "{}", seen(0.5));
+        assert!((seen(2.0) - 1.0).abs() < 1e-6, "{}", seen(2.0));
+    }
+
     #[test]
     fn a_light_inside_a_corner_stays_finite() {
         let room = block(vec3(-2.0, 0.0, -2.0), vec3(2.0, 5.9, 2.0));
