@@ -3,11 +3,14 @@
 use std::{
     ffi::OsStr,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use image::ImageReader;
 use tyndall::cpu::LightTexture;
 use tyndall_scene::texture::linear_from_srgb;
+
+use crate::{output::Pattern, shot::FrameRange};
 
 /// The most texels a side.
 const MAX_SIDE: usize = 8192;
@@ -31,6 +34,24 @@ pub enum TextureError {
         /// Its size [texels].
         size: [usize; 2],
     },
+    /// It is to be another picture in each frame, and there is none.
+    #[error("cannot read {}: expected pictures of frames, such as {}, found none", file.display(), first.display())]
+    NoFrames {
+        /// The files' pattern.
+        file: PathBuf,
+        /// The picture of frame 0.
+        first: PathBuf,
+    },
+    /// It is to be another picture in each frame, and one is missing.
+    #[error("cannot read {}: expected a picture of each of the frames {frames}, {} is missing", file.display(), missing.display())]
+    MissingFrame {
+        /// The files' pattern.
+        file: PathBuf,
+        /// From the first that is there to the last.
+        frames: FrameRange,
+        /// The first that is not.
+        missing: PathBuf,
+    },
     /// It holds a value that is no light.
     #[error("cannot take {}: expected finite values >= 0, found {value} in column {}, row {}", file.display(), texel[0], texel[1])]
     Value {
@@ -41,6 +62,70 @@ pub enum TextureError {
         /// Where it is.
         texel: [usize; 2],
     },
+}
+
+/// The pictures of a light: one for good, or one a frame.
+#[derive(Debug)]
+pub(crate) enum Pictures {
+    /// The same in all frames.
+    Still(Arc<LightTexture>),
+    /// A file a frame, over and over again.
+    Frames(Pattern, FrameRange),
+}
+
+impl Pictures {
+    /// Reads a picture. Where its name has a place for a frame's number (`####` or `%04d`) and no file is called so to the
+    /// letter, finds which frames there are.
+    ///
+    /// # Errors
+    /// As for [`load`], and where there is no picture of any frame or a frame is missing among the others.
+    pub(crate) fn open(file: &Path) -> Result<Self, TextureError> {
+        match Pattern::of(file) {
+            Ok(pattern) if !file.exists() => {
+                let frames = frames(file, &pattern)?;
+                Ok(Self::Frames(pattern, frames))
+            }
+            _ => Ok(Self::Still(Arc::new(load(file)?))),
+        }
+    }
+
+    /// The picture of a frame. Before the first one that there is and after the last they start over.
+    ///
+    /// # Errors
+    /// As for [`load`].
+    pub(crate) fn at(&self, frame: u32) -> Result<Arc<LightTexture>, TextureError> {
+        match self {
+            Self::Still(picture) => Ok(Arc::clone(picture)),
+            Self::Frames(pattern, FrameRange { first, last }) => {
+                let count = i64::from(*last) - i64::from(*first) + 1;
+                let from_first = (i64::from(frame) - i64::from(*first)).rem_euclid(count);
+                load(&pattern.file(first + from_first as u32)).map(Arc::new)
+            }
+        }
+    }
+}
+
+/// The frames whose pictures are there, all of them.
+fn frames(file: &Path, pattern: &Pattern) -> Result<FrameRange, TextureError> {
+    let mut numbers = pattern
+        .numbers()
+        .map_err(|cause| unreadable(file, &cause))?;
+    numbers.sort_unstable();
+    let (Some(&first), Some(&last)) = (numbers.first(), numbers.last()) else {
+        return Err(TextureError::NoFrames {
+            file: file.to_owned(),
+            first: pattern.file(0),
+        });
+    };
+    let frames = FrameRange { first, last };
+    match frames.frames().zip(&numbers).find(|(a, b)| a != *b) {
+        None => Ok(frames),
+        Some((missing, _)) => Err(TextureError::MissingFrame {
+            file: file.to_owned(),
+            frames,
+            missing: pattern.file(missing),
+        }),
+    }
 }
 
 /// Reads a PNG or JPEG, which is taken as sRGB, or an EXR, which is taken as it is.
@@ -165,6 +250,41 @@ mod tests {
         let (_folder, exr) = written("a.exr", [[0.0, 0.5, 1e4], [1e-9; 3]]);
         let texture = load(&exr).unwrap();
         assert_eq!(texture.texels, [[0.0, 0.5, 1e4], [1e-9; 3]]);
+    }
+
+    #[test]
+    fn pictures_of_frames_start_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        let write = |name: &str, value: f32| {
+            let picture = Picture {
+                size: [1, 1],
+                pixels: vec![[value; 3]],
+            };
+            let layers = vec![(Layer::Transmittance, picture)];
+            Format::Exr.write(&file(name), &layers, 0.0).unwrap();
+        };
+        for n in 3..6 {
+            write(&format!("v.{n:03}.exr"), n as f32);
+        }
+        // None of these is of the sequence.
+        write("v.0004.exr", 1.0);
+        write("w.009.exr", 1.0);
+        for name in ["v.###.exr", "v.%03d.exr"] {
+            let pictures = Pictures::open(&file(name)).unwrap();
+            let found = [0, 1, 3, 4, 5, 6, 12].map(|n| pictures.at(n).unwrap().texels[0][0]);
+            assert_eq!(found, [3.0, 4.0, 3.0, 4.0, 5.0, 3.0, 3.0], "{name}");
+        }
+        write("v.008.exr", 8.0);
+        let message = Pictures::open(&file("v.###.exr")).unwrap_err().to_string();
+        assert!(message.contains("each of the frames 3..8"), "{message}");
+        assert!(message.ends_with("v.006.exr is missing"), "{message}");
+        let message = Pictures::open(&file("u.##.exr")).unwrap_err().to_string();
+        assert!(message.ends_with("u.00.exr, found none"), "{message}");
+        // A file that is called so to the letter is one picture.
+        write("a#b.exr", 7.0);
+        let still = Pictures::open(&file("a#b.exr")).unwrap();
+        assert_eq!(still.at(5).unwrap().texels[0][0], 7.0);
     }
 
     #[test]

@@ -41,7 +41,8 @@ impl Sequence {
     pub fn new(shot: &Shot, rendered: FrameRange, stages: &mut Stages) -> Result<Self, Failure> {
         let source = Source::new(shot, stages)?;
         let animation = shot.animation.clone().unwrap_or_default();
-        let lights = source.moment(&source.scene).map_err(Failure::input)?.lights;
+        let first = animation.frames.unwrap_or(rendered).first;
+        let lights = source.moment(&source.scene, first)?.lights;
         for movement in &animation.moves {
             check_target(movement, &source.scene, &lights).map_err(Failure::input)?;
         }
@@ -64,13 +65,13 @@ impl Sequence {
     /// Everything as it is in this frame.
     ///
     /// # Errors
-    /// [`Failure::Input`] where a movement makes the camera or a light invalid.
+    /// [`Failure::Input`] where a light's picture of this frame cannot be read.
     pub fn at(&mut self, frame: u32) -> Result<Setup, Failure> {
         // Taken, so that it is copied only where somebody still holds the frame before.
         let mut scene = std::mem::replace(&mut self.scene, Arc::clone(&self.source.scene));
         self.pose(Arc::make_mut(&mut scene), frame);
         self.scene = Arc::clone(&scene);
-        let mut moment = self.source.moment(&scene).map_err(Failure::input)?;
+        let mut moment = self.source.moment(&scene, frame)?;
         for movement in &self.animation.moves {
             let offset = self.offset(movement, frame);
             match movement.target {

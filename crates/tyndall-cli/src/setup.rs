@@ -19,9 +19,12 @@ use tyndall_scene::{
 
 use crate::{
     failure::Failure,
-    light_texture,
+    light_texture::{Pictures, TextureError},
     progress::Stages,
-    shot::{CameraBase, LightSpec, Origin, Problem, SceneCameras, SceneSource, Shot, ShotError},
+    shot::{
+        CameraBase, LightSpec, Location, Origin, Problem, SceneCameras, SceneSource, Shot,
+        ShotError,
+    },
 };
 
 /// A shot with everything it names loaded, and everything it leaves out filled in. Clones share the scene.
@@ -47,8 +50,8 @@ pub type LazyTracer = LazyLock<Tracer, Box<dyn FnOnce() -> Tracer + Send>>;
 pub struct LightSetup {
     /// Width and height of a face of its shadow map [texels].
     pub map_size: [u32; 2],
-    /// The picture it shines through.
-    pub texture: Option<LightTexture>,
+    /// The picture it shines through; another one where it changes.
+    pub texture: Option<Arc<LightTexture>>,
 }
 
 /// Loads a scene.
@@ -82,7 +85,7 @@ impl Setup {
     /// [`Failure::Input`] where the scene or a picture can't be loaded, or the shot doesn't fit the scene.
     pub fn new(shot: &Shot, stages: &mut Stages) -> Result<Self, Failure> {
         let source = Source::new(shot, stages)?;
-        let moment = source.moment(&source.scene).map_err(Failure::input)?;
+        let moment = source.moment(&source.scene, 0)?;
         let (scene, tracer) = (Arc::clone(&source.scene), Arc::clone(&source.tracer));
         Ok(source.setup(scene, tracer, moment, source.tracer.geometry()))
     }
@@ -96,13 +99,16 @@ pub(crate) struct Source {
     /// The same.
     pub(crate) tracer: Arc<LazyTracer>,
     framing: Option<Framing>,
-    lights: Vec<LightSetup>,
+    /// One entry a light.
+    pictures: Vec<Option<(Pictures, Location)>>,
 }
 
 /// What may be another in each frame, besides the scene's nodes.
 pub(crate) struct Moment {
     pub(crate) camera: Camera,
     pub(crate) lights: Vec<LightSpec>,
+    /// The pictures of the lights.
+    textures: Vec<Option<Arc<LightTexture>>>,
     pub(crate) medium: Medium,
 }
 
@@ -127,12 +133,26 @@ impl Source {
             scene: Arc::new(scene),
             tracer: Arc::new(tracer),
             framing,
-            lights: specs.iter().map(load_light).collect::<Result<_, _>>()?,
+            pictures: specs.iter().map(open_pictures).collect::<Result<_, _>>()?,
         })
     }
 
-    /// Camera, lights and medium, of which the scene's own are where its nodes are now.
-    pub(crate) fn moment(&self, scene: &Scene) -> Result<Moment, ShotError> {
+    /// Camera, lights and medium of a frame, of which the scene's own are where its nodes are now.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where the shot doesn't fit the scene, or a picture of the frame can't be loaded.
+    pub(crate) fn moment(&self, scene: &Scene, frame: u32) -> Result<Moment, Failure> {
+        let textures = self.pictures.iter();
+        let textures = textures.map(|pictures| picture_at(pictures.as_ref(), frame));
+        let textures = textures.collect::<Result<_, _>>()?;
+        self.moment_with(scene, textures).map_err(Failure::input)
+    }
+
+    fn moment_with(
+        &self,
+        scene: &Scene,
+        textures: Vec<Option<Arc<LightTexture>>>,
+    ) -> Result<Moment, ShotError> {
         let (shot, aspect) = (&self.shot, aspect(&self.shot));
         let cameras = framing::cameras(scene, aspect);
         let own_lights: Vec<Emitter> = framing::lights(scene)
@@ -159,6 +179,7 @@ impl Source {
         Ok(Moment {
             camera: shot.camera.resolve(&cameras, aspect)?,
             lights: lights(shot, framing.as_ref())?,
+            textures,
             medium: medium(shot, framing.as_ref())?,
         })
     }
@@ -172,6 +193,7 @@ impl Source {
         extent: &Geometry,
     ) -> Setup {
         let lights = moment.lights.iter();
+        let extras = lights.clone().zip(moment.textures);
         Setup {
             scene,
             tracer,
@@ -181,7 +203,12 @@ impl Source {
                 medium: moment.medium,
                 technique: self.shot.technique.clone(),
             },
-            lights: self.lights.clone(),
+            lights: extras
+                .map(|(spec, texture)| LightSetup {
+                    map_size: [spec.shadow_map; 2],
+                    texture,
+                })
+                .collect(),
             size: self.shot.size,
         }
     }
@@ -245,14 +272,30 @@ fn light(spec: &LightSpec, extent: &Geometry) -> Light {
     }
 }
 
-fn load_light(spec: &LightSpec) -> Result<LightSetup, Failure> {
-    let load = |texture: &crate::shot::TextureSpec| {
-        light_texture::load(&texture.file).map_err(|cause| {
-            Failure::Input(anyhow::Error::new(cause).context(texture.location.clone()))
-        })
+fn open_pictures(spec: &LightSpec) -> Result<Option<(Pictures, Location)>, Failure> {
+    let Some(texture) = &spec.texture else {
+        return Ok(None);
     };
-    Ok(LightSetup {
-        map_size: [spec.shadow_map; 2],
-        texture: spec.texture.as_ref().map(load).transpose()?,
-    })
+    let location = texture.location.clone();
+    match Pictures::open(&texture.file) {
+        Ok(pictures) => Ok(Some((pictures, location))),
+        Err(cause) => Err(at_texture(cause, location)),
+    }
+}
+
+fn picture_at(
+    pictures: Option<&(Pictures, Location)>,
+    frame: u32,
+) -> Result<Option<Arc<LightTexture>>, Failure> {
+    let picture = |(pictures, location): &(Pictures, Location)| {
+        pictures
+            .at(frame)
+            .map_err(|cause| at_texture(cause, location.clone()))
+    };
+    pictures.map(picture).transpose()
+}
+
+/// Says where the shot names the picture.
+fn at_texture(cause: TextureError, location: Location) -> Failure {
+    Failure::Input(anyhow::Error::new(cause).context(location))
 }

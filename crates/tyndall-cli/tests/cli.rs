@@ -590,3 +590,135 @@ fn what_moves_must_be_there() {
     );
     assert_eq!(files(folder.path()), ["shot.toml"]);
 }
+
+/// The shot under a rectangular light, with lines of its table.
+fn area_shot(light: &str) -> String {
+    let (before, after) = SHOT.split_once("type = \"directional\"").unwrap();
+    let (_, medium) = after.split_once("[medium]").unwrap();
+    format!("{before}type = \"rect\"\nradiance = [9, 9, 9]\nvpls = 9\n{light}[medium]{medium}")
+}
+
+/// Where a light that looks down hangs.
+const PANEL: &str = "center = [0, 3, 0]\nedge_x = [1, 0, 0]\nedge_y = [0, 0, 1]\n";
+
+/// Renders in-scattered light, of frames where they are given, to files of this name.
+fn in_scatter(folder: &Path, technique: &str, frames: Option<&str>, name: &str) -> Output {
+    let mut arguments = vec!["render", "shot.toml", "--layer", "inscatter", "-o", name];
+    arguments.extend(["--technique", technique]);
+    if let Some(frames) = frames {
+        arguments.extend(["--frames", frames]);
+    }
+    tyndall(folder, &arguments)
+}
+
+/// The reference, and the technique for rectangular lights where there is a GPU.
+fn area_techniques(what: &str) -> Vec<&'static str> {
+    let on_gpu = device::device_or_skip(what).map(|_| "ivsv");
+    std::iter::once("reference").chain(on_gpu).collect()
+}
+
+#[test]
+fn a_light_shows_a_picture_a_frame() {
+    let light = format!("{PANEL}texture = {{ file = \"film/p.##.png\" }}\n");
+    let folder = folder_with("shot.toml", area_shot(&light));
+    let film = folder.path().join("film");
+    std::fs::create_dir(&film).unwrap();
+    let picture = |n: u32| film.join(format!("p.{n:02}.png"));
+    let output = in_scatter(folder.path(), "reference", Some("0..1"), "f#.exr");
+    assert_fails(
+        &output,
+        1,
+        &[
+            "shot.toml:15",
+            "light.0.texture.file",
+            "p.00.png",
+            "found none",
+        ],
+    );
+    for (n, color) in [(0, [255, 0, 0]), (1, [0, 0, 255]), (3, [0, 255, 0])] {
+        let pixels = image::RgbImage::from_pixel(2, 1, image::Rgb(color));
+        pixels.save(picture(n)).unwrap();
+    }
+    let output = in_scatter(folder.path(), "reference", Some("0..1"), "f#.exr");
+    assert_fails(&output, 1, &["frames 0..3", "p.02.png is missing"]);
+    assert_eq!(files(folder.path()), ["film", "shot.toml"]);
+
+    std::fs::remove_file(picture(3)).unwrap();
+    for technique in area_techniques("a picture a frame on the GPU") {
+        let name = |frame: &str| format!("{technique}{frame}.exr");
+        let output = in_scatter(folder.path(), technique, Some("0..2"), &name("#"));
+        assert!(output.status.success(), "{}", stderr(&output));
+        let output = in_scatter(folder.path(), technique, None, &name(""));
+        assert!(output.status.success(), "{}", stderr(&output));
+        let [first, second, third, still] = ["0", "1", "2", ""]
+            .map(|frame| Picture::read_exr(&folder.path().join(name(frame))).unwrap());
+        let sums = |picture: &Picture| {
+            let channel = |k: usize| picture.pixels().iter().map(|pixel| pixel[k]).sum::<f64>();
+            [channel(0), channel(1), channel(2)]
+        };
+        // Red, then blue, then over again; without a number it is that of frame 0.
+        let [red, nothing, none] = sums(&first);
+        assert!(
+            red > 0.1 && [nothing, none] == [0.0; 2],
+            "{:?}",
+            sums(&first)
+        );
+        let [none, nothing, blue] = sums(&second);
+        assert!(
+            blue > 0.1 && [nothing, none] == [0.0; 2],
+            "{:?}",
+            sums(&second)
+        );
+        assert!(third == first && still == first, "{technique}");
+    }
+}
+
+#[test]
+fn a_rectangular_light_that_moves_is_the_same_as_one_that_is_there() {
+    let moves = "[animation]\nfps = 10\n[[animation.move]]\nnode = \"light.0\"\n\
+                 translate = [[0, 0, 0], [1, 0.5, 2]]\nrotate_deg = [[0, 0, 0], [0, 0, 90]]\n";
+    let area_shot = |light: &str| area_shot(light).replace("builtin:empty", "builtin:hairball");
+    let folder = tempfile::tempdir().unwrap();
+    for technique in area_techniques("a light that moves on the GPU") {
+        let write = |text: String| std::fs::write(folder.path().join("shot.toml"), text).unwrap();
+        let run = |frames: Option<&str>, name: &str| {
+            let output = in_scatter(folder.path(), technique, frames, name);
+            assert!(output.status.success(), "{}", stderr(&output));
+        };
+        let read = |name: &str| Picture::read_exr(&folder.path().join(name)).unwrap();
+        write(area_shot(PANEL) + moves);
+        run(Some("0..4"), "f#.exr");
+        write(area_shot(PANEL));
+        run(None, "start.exr");
+        // Half way: turned by 45 degrees about z.
+        let half = std::f32::consts::FRAC_1_SQRT_2;
+        write(area_shot(&format!(
+            "center = [0.5, 3.25, 1]\nedge_x = [{half}, {half}, 0]\nedge_y = [0, 0, 1]\n"
+        )));
+        run(None, "middle.exr");
+        let error = |a: &str, b: &str| compare(&read(a), &read(b)).unwrap().rel_mae;
+        assert_eq!(read("f0.exr"), read("start.exr"), "{technique}");
+        let apart = error("f2.exr", "middle.exr");
+        // Measured: 1.0e-7; the angle is in degrees, and the edges above are rounded.
+        assert!(apart < 2e-7, "{technique}: {apart}");
+        assert!(error("f0.exr", "middle.exr") > 0.1, "{technique}");
+        // By itself a frame is what it is among the others.
+        let ranged = moves.replace("fps = 10", "fps = 10\nframes = \"0..4\"");
+        write(area_shot(PANEL) + &ranged);
+        run(Some("3..3"), "alone#.exr");
+        assert_eq!(read("alone3.exr"), read("f3.exr"), "{technique}");
+    }
+}
+
+#[test]
+fn glass_that_has_no_effect_is_said() {
+    let shot = area_shot(PANEL).replace("builtin:empty", "builtin:church");
+    let folder = folder_with("shot.toml", shot);
+    for technique in area_techniques("glass before a rectangular light on the GPU") {
+        let output = in_scatter(folder.path(), technique, None, "a.exr");
+        let said = stderr(&output);
+        assert!(output.status.success(), "{said}");
+        let is_said = said.contains("note: on the GPU coloured glass tints no light of rectangles");
+        assert_eq!(is_said, technique == "ivsv", "{said}");
+    }
+}

@@ -16,7 +16,9 @@
 //! clears the depths there, and the rest is for curved surfaces. Texels outside the map are lit; a cube's are clamped to
 //! the face. A texel where nothing was drawn is lit.
 //!
-//! **Rectangles** have no shadow map: they shine unshadowed, as [`RECT_SAMPLES`] points.
+//! **Rectangles** have no shadow map. They shine as [`RECT_SAMPLES`] points, unblocked; visibility is the share of their
+//! light that arrives of as many samples as the light itself says: traced on the CPU, through glass as well, and on the GPU
+//! what a technique of tyndall's found.
 //!
 //! **Sky**, where there is no surface: from [`SKY_HORIZON`] to [`SKY_ZENITH`] with the height of the view ray's
 //! direction, times the directional lights' illuminance and the view tint. A scene without a sun has a black sky.
@@ -34,7 +36,10 @@ use tyndall::{
     shadow,
 };
 
-use crate::trace::GBuffer;
+use crate::{
+    trace::{GBuffer, Tracer},
+    view::Ray,
+};
 
 /// How far a point moves along its normal before its shadow is looked up [texels].
 pub const NORMAL_OFFSET_TEXELS: f64 = 2.0;
@@ -48,15 +53,24 @@ pub const SKY_HORIZON: [f64; 3] = [0.020, 0.024, 0.029];
 pub const SKY_ZENITH: [f64; 3] = [0.006, 0.011, 0.022];
 /// Points that a rectangular light is taken as.
 pub const RECT_SAMPLES: u32 = 16;
+/// How far off their surface rays to a rectangular light begin, over the distance to the eye: above what the depth buffer
+/// leaves open.
+const OFF_SURFACE: f64 = 1e-4;
 
 /// Radiance of what the camera sees [W/(m^2 sr)], linear RGB, row by row from the top left; without the medium between
-/// it and the eye. `lights` has one entry a light of the frame, in the same order.
-pub fn shade(g_buffer: &GBuffer, frame: &Frame, lights: &[CpuLightInputs<'_>]) -> Vec<[f32; 3]> {
+/// it and the eye. `lights` has one entry a light of the frame, in the same order. What blocks rectangular lights is traced;
+/// nothing blocks them where there is no tracer.
+pub fn shade(
+    g_buffer: &GBuffer,
+    frame: &Frame,
+    lights: &[CpuLightInputs<'_>],
+    tracer: Option<&Tracer>,
+) -> Vec<[f32; 3]> {
     let scene_lights: Vec<SurfaceLight<'_>> = frame
         .lights
         .iter()
         .zip(lights)
-        .map(|(light, inputs)| SurfaceLight::new(light, inputs))
+        .map(|(light, inputs)| SurfaceLight::new(light, inputs, tracer))
         .collect();
     let shading = Shading {
         g_buffer,
@@ -108,15 +122,28 @@ impl Shading<'_> {
         if depth == self.far_value {
             return tint * sky(ray.direction, self.sun);
         }
-        let (point, normal) = (ray.at(ray.length), vector(self.g_buffer.normal[pixel]));
+        let surface = SurfacePoint {
+            point: ray.at(ray.length),
+            normal: vector(self.g_buffer.normal[pixel]),
+            distance: ray.length,
+        };
         let irradiance: DVec3 = self
             .lights
             .iter()
-            .map(|light| light.irradiance(point, normal, &self.optics))
+            .map(|light| light.irradiance(&surface, &self.optics))
             .sum();
         let reflected = vector(self.g_buffer.base_color[pixel]) / PI * irradiance;
         tint * (reflected + vector(self.g_buffer.emissive[pixel]))
     }
+}
+
+/// What a pixel sees.
+struct SurfacePoint {
+    point: DVec3,
+    /// Unit, facing the viewer.
+    normal: DVec3,
+    /// From where the view ray starts [m].
+    distance: f64,
 }
 
 /// A light as surfaces see it.
@@ -125,10 +152,11 @@ struct SurfaceLight<'a> {
     /// The light without cone and texture.
     bare: Vec<LightModel<'a>>,
     shadow: Option<SurfaceShadow<'a>>,
+    traced: Option<TracedShadow<'a>>,
 }
 
 impl<'a> SurfaceLight<'a> {
-    fn new(light: &Light, inputs: &CpuLightInputs<'a>) -> Self {
+    fn new(light: &Light, inputs: &CpuLightInputs<'a>, tracer: Option<&'a Tracer>) -> Self {
         let mut sampled = *light;
         if let Emitter::Rect { samples, .. } = &mut sampled.emitter {
             *samples = RECT_SAMPLES;
@@ -137,11 +165,18 @@ impl<'a> SurfaceLight<'a> {
             samples: LightModel::samples(&sampled, inputs.texture),
             bare: LightModel::samples(&bare(light), None),
             shadow: SurfaceShadow::new(light, inputs),
+            traced: tracer
+                .filter(|_| matches!(light.emitter, Emitter::Rect { .. }))
+                .map(|tracer| TracedShadow {
+                    samples: LightModel::samples(light, inputs.texture),
+                    tracer,
+                }),
         }
     }
 
     /// Irradiance on a surface, direct and ambient [W/m^2].
-    fn irradiance(&self, point: DVec3, normal: DVec3, optics: &Optics) -> DVec3 {
+    fn irradiance(&self, surface: &SurfacePoint, optics: &Optics) -> DVec3 {
+        let (point, normal) = (surface.point, surface.normal);
         let direct: DVec3 = self
             .samples
             .iter()
@@ -159,11 +194,50 @@ impl<'a> SurfaceLight<'a> {
         if direct == DVec3::ZERO {
             return ambient;
         }
-        let visibility = self
-            .shadow
-            .as_ref()
-            .map_or(DVec3::ONE, |shadow| shadow.visibility(point, normal));
-        ambient + visibility * direct
+        let mapped = self.shadow.as_ref();
+        let mapped = mapped.map_or(DVec3::ONE, |shadow| shadow.visibility(point, normal));
+        let traced = self.traced.as_ref();
+        let traced = traced.map_or(DVec3::ONE, |shadow| shadow.visibility(surface, optics));
+        ambient + mapped * traced * direct
+    }
+}
+
+/// A rectangle's samples, and what blocks them.
+struct TracedShadow<'a> {
+    samples: Vec<LightModel<'a>>,
+    tracer: &'a Tracer,
+}
+
+impl TracedShadow<'_> {
+    /// The share of the light that arrives; all of it where there is none.
+    fn visibility(&self, surface: &SurfacePoint, optics: &Optics) -> DVec3 {
+        let (mut arriving, mut all) = (DVec3::ZERO, DVec3::ZERO);
+        let point = surface.point + OFF_SURFACE * surface.distance * surface.normal;
+        for sample in &self.samples {
+            let incident = sample.incident(surface.point, optics);
+            let received = (-surface.normal.dot(incident.direction)).max(0.0);
+            let light = received * incident.irradiance;
+            if let (Some(position), true) = (sample.position(), light != DVec3::ZERO) {
+                all += light;
+                arriving += light * self.tint(point, position);
+            }
+        }
+        DVec3::select(all.cmpgt(DVec3::ZERO), arriving / all, DVec3::ONE)
+    }
+
+    /// What light is multiplied by on its way from one point to another.
+    fn tint(&self, point: DVec3, light: DVec3) -> DVec3 {
+        let distance = (light - point).length();
+        let ray = Ray {
+            origin: point,
+            direction: (light - point) / distance,
+        };
+        if self.tracer.blocked(&ray, [0.0, distance]) {
+            return DVec3::ZERO;
+        }
+        let mut glass = Vec::new();
+        self.tracer.glass(&ray, [0.0, distance], &mut glass);
+        glass.iter().map(|hit| hit.tint).product()
     }
 }
 
@@ -393,7 +467,7 @@ mod tests {
         };
         let frame = frame(vec![light], sigma_a);
         let g_buffer = tracer.g_buffer(&frame.camera, SIZE, &quiet);
-        let picture = shade(&g_buffer, &frame, &[inputs]);
+        let picture = shade(&g_buffer, &frame, &[inputs], Some(&tracer));
         assert!(picture.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
         picture.into_iter().map(vector).collect()
     }
@@ -596,6 +670,40 @@ mod tests {
             "{}, {expected}",
             found.x
         );
+    }
+
+    /// Under a plate that hides it: dark in the middle, half lit where the plate's edge halves it, lit far away.
+    #[test]
+    fn a_rectangle_casts_a_soft_shadow() {
+        let rect = Emitter::Rect {
+            center: [0.0, 10.0, 0.0],
+            edge_x: [0.2, 0.0, 0.0],
+            edge_y: [0.0, 0.0, 0.2],
+            radiance: [100.0; 3],
+            samples: 256,
+        };
+        // Above the camera, so that it hides nothing of the ground.
+        let plate = quad(vec3(-0.1, 8.0, -0.1), 0.2 * Vec3::X, 0.2 * Vec3::Z);
+        let open = picture(&opaque(&ground()), rect, None, 0.0);
+        let hidden = picture(
+            &opaque(&[ground(), plate.to_vec()].concat()),
+            rect,
+            None,
+            0.0,
+        );
+        let seen = |x: f64| {
+            let pixel = (0..hidden.len())
+                .min_by_key(|i| {
+                    (1e6 * (ground_point(*i) - DVec3::new(x, 0.0, 0.0)).length()) as u64
+                })
+                .unwrap();
+            let ambient = AMBIENT_UP / (1.0 + AMBIENT_UP);
+            (hidden[pixel].x / open[pixel].x - ambient) / (1.0 - ambient)
+        };
+        // The umbra ends at 0.1, the penumbra at 0.9; pixels are 0.125 m.
+        assert!(seen(0.0).abs() < 0.01, "{}", seen(0.0));
+        assert!((seen(0.5) - 0.5).abs() < 0.15, "{}", seen(0.5));
+        assert!((seen(2.0) - 1.0).abs() < 1e-6, "{}", seen(2.0));
     }
 
     #[test]

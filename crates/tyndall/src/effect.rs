@@ -108,6 +108,15 @@ pub struct PointCloud<'a> {
     pub map_side: u32,
 }
 
+/// What shadows on surfaces are made of besides a frame's inputs.
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceShadows {
+    /// World-space normals of what each pixel sees, unit length in rgb, facing the viewer: 2-D, of floats, of the view's size.
+    /// Samples of a light then count by the cosine of their angle to it, and the surface's slope says how far it is kept
+    /// from shadowing itself. `None`, or a pixel of zeros: not known; they count as if the surface faced each.
+    pub normals: Option<wgpu::TextureView>,
+}
+
 /// A number that says what a frame took, beside its time.
 #[derive(Clone, Debug)]
 pub struct Count {
@@ -147,6 +156,9 @@ pub struct EffectView {
     counts: Vec<Count>,
     reuse: Option<Reuse>,
     history: History,
+    surface_shadows: Option<SurfaceShadows>,
+    /// One entry a light of the frame prepared last.
+    visibilities: Vec<Option<wgpu::TextureView>>,
     /// Whether the frame prepared last was recorded.
     is_recorded: bool,
     output: wgpu::TextureView,
@@ -199,6 +211,8 @@ impl Effect {
             counts: Vec::new(),
             reuse: None,
             history: History::default(),
+            surface_shadows: None,
+            visibilities: Vec::new(),
             is_recorded: false,
             output,
             composite: None,
@@ -221,6 +235,9 @@ impl Effect {
         validate::frame(frame)?;
         validate::technique(frame, Backends::Gpu)?;
         validate::gpu_inputs(frame, inputs, view.size)?;
+        if let Some(shadows) = &view.surface_shadows {
+            validate::surface_shadows(shadows, view.size)?;
+        }
         // With no light at all, a black one still writes the transmittance.
         let black = (BLACK, LightInputs::default());
         let lights: Vec<(Light, LightInputs<'_>)> = if frame.lights.is_empty() {
@@ -245,6 +262,7 @@ impl Effect {
         view.history.begin(lights.len(), view.is_recorded);
         let frame_uniform_buffer = view.pool.uniform(device, queue, (None, "frame"), &uniform);
         let (mut passes, mut counts) = (Vec::new(), Vec::new());
+        let mut visibilities = Vec::new();
         let mut before = self.shared.absent.light.clone();
         for (i, (light, light_inputs)) in lights.iter().enumerate() {
             let has_glass = light_inputs.glass.is_some();
@@ -273,6 +291,8 @@ impl Effect {
                 target: target.clone(),
                 stencil: None,
                 witness: None,
+                surface_shadows: view.surface_shadows.as_ref(),
+                visibility: None,
                 counts: &mut counts,
             };
             match view.reuse {
@@ -285,11 +305,13 @@ impl Effect {
                     passes.extend(self.keep(&mut view.history, &mut scope, alone, signature));
                 }
             }
+            visibilities.push(scope.visibility);
             before = target;
         }
         view.pool.end();
         view.passes = passes;
         view.counts = counts;
+        view.visibilities = visibilities;
         view.is_recorded = false;
         view.composite =
             Some(self.frame_group(device, &frame_uniform_buffer, inputs.depth, &before));
@@ -420,6 +442,25 @@ impl EffectView {
     /// What is kept of earlier frames from now on; `None`, as at first: nothing.
     pub fn set_reuse(&mut self, reuse: Option<Reuse>) {
         self.reuse = reuse;
+    }
+
+    /// Asks for shadows of rectangular lights on surfaces, from the next frame prepared on; `None`, as at first: nobody wants
+    /// them, and they cost nothing.
+    pub fn set_surface_shadows(&mut self, shadows: Option<SurfaceShadows>) {
+        self.surface_shadows = shadows;
+    }
+
+    /// How much of a light (its index in the frame) reaches the surface that each pixel sees, of the frame recorded last:
+    /// `Rgba16Float`, of the view's size, 0 to 1 in each of rgb, 1 in a; 1 where no light would arrive. It is the mean over
+    /// the light's samples, weighed by what each would send there: its share of the light's picture, the emitter's cosine,
+    /// 1 / d^2, extinction on the way, and the surface's cosine where [`SurfaceShadows::normals`] are given. So the irradiance
+    /// of a shadowed surface is that of the unshadowed one, times this. What a pixel without a surface holds is that of the
+    /// end of its ray on the far plane.
+    ///
+    /// `None` where [`EffectView::set_surface_shadows`] did not ask for it, where there is no such light, and with any
+    /// technique but `ivsv`, whose voxels it is read from. The view may be another one after each `prepare`.
+    pub fn surface_light_visibility(&self, light: usize) -> Option<&wgpu::TextureView> {
+        self.visibilities.get(light)?.as_ref()
     }
 
     /// The passes of the frame prepared last.

@@ -114,7 +114,7 @@ mod voxels;
 #[cfg(feature = "gpu")]
 pub use effect::{
     Count, CountValue, CreateError, Effect, EffectOptions, EffectView, FrameInputs, LightInputs,
-    OutputPrecision, PointCloud,
+    OutputPrecision, PointCloud, SurfaceShadows,
 };
 pub use error::PrepareError;
 #[cfg(feature = "gpu")]

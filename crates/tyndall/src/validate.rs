@@ -482,6 +482,34 @@ pub(crate) fn gpu_inputs(
     Ok(())
 }
 
+/// Checks what shadows on surfaces are made of.
+#[cfg(feature = "gpu")]
+pub(crate) fn surface_shadows(
+    shadows: &crate::effect::SurfaceShadows,
+    view_size: [u32; 2],
+) -> Checked {
+    const FIELD: &str = "surface_shadows.normals";
+    let Some(normals) = &shadows.normals else {
+        return Ok(());
+    };
+    let texture = normals.texture();
+    bindable(FIELD, texture)?;
+    let size = [texture.width(), texture.height()];
+    require(
+        size == view_size,
+        FIELD,
+        "a texture of the view's size",
+        size,
+    )?;
+    let samples = texture.format().sample_type(None, None);
+    require(
+        matches!(samples, Some(wgpu::TextureSampleType::Float { .. })),
+        FIELD,
+        "a texture of a format of floats",
+        texture.format(),
+    )
+}
+
 #[cfg(feature = "gpu")]
 fn point_cloud(field: &str, light: &Light, cloud: &crate::effect::PointCloud<'_>) -> Checked {
     require(

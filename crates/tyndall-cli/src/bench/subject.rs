@@ -1,6 +1,9 @@
 //! What the papers rendered: their scenes where those are at hand, else a built-in scene of the same kind.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use glam::Vec3;
 use tyndall::{
@@ -99,7 +102,11 @@ pub(super) const DONUTS_RECT: Subject = subject(
 /// How files of scenes begin that are made by code.
 const BUILTIN: &str = "builtin:";
 
-pub(super) const HAIRBALL: Subject = subject("hairball", None, "builtin:hairball");
+pub(super) const HAIRBALL: Subject = subject(
+    "hairball",
+    asset!("builtin:hairball", "hairball-rect"),
+    "builtin:hairball",
+);
 pub(super) const ANGEL_RECT: Subject =
     subject("angel", asset!("angel.glb", "angel-rect"), "builtin:slats");
 pub(super) const CITY_RECT: Subject =
@@ -238,7 +245,7 @@ fn with_picture(setup: &Setup, picture: LightTexture) -> Setup {
             edge_x: (2.0 * radius * x).to_array(),
             edge_y: (2.0 * radius * y).to_array(),
         });
-        extra.texture = Some(picture);
+        extra.texture = Some(Arc::new(picture));
     }
     setup
 }

@@ -1,6 +1,9 @@
 //! Names of a sequence's files.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 /// A file name with a place for the frame's number.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,6 +51,29 @@ impl Pattern {
     pub fn file(&self, frame: u32) -> PathBuf {
         let (before, digits, after) = (&self.before, self.digits, &self.after);
         self.folder.join(format!("{before}{frame:0digits$}{after}"))
+    }
+
+    /// The frames whose files there are, in any order.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read.
+    pub fn numbers(&self) -> io::Result<Vec<u32>> {
+        let here = Path::new(".");
+        let is_here = self.folder.as_os_str().is_empty();
+        let entries = std::fs::read_dir(if is_here { here } else { &self.folder })?;
+        let mut numbers = Vec::new();
+        for entry in entries {
+            let name = entry?.file_name();
+            numbers.extend(name.to_str().and_then(|name| self.number(name)));
+        }
+        Ok(numbers)
+    }
+
+    /// The frame whose file is called so.
+    fn number(&self, name: &str) -> Option<u32> {
+        let digits = name.strip_prefix(&self.before)?.strip_suffix(&self.after)?;
+        let number = digits.parse().ok()?;
+        (self.file(number).file_name()? == name).then_some(number)
     }
 }
 

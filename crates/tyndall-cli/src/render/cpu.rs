@@ -37,7 +37,7 @@ pub(super) fn render(
     };
     let surface = if needs.surface {
         stages.run("shade surfaces", |_| {
-            shade(&g_buffer, &setup.frame, &lights)
+            shade(&g_buffer, &setup.frame, &lights, Some(&**setup.tracer))
         })
     } else {
         Vec::new()
@@ -149,7 +149,7 @@ pub(crate) fn light_inputs<'a>(setup: &'a Setup, maps: &'a [LightMaps]) -> Vec<C
         .map(|(maps, light)| CpuLightInputs {
             shadow_map: maps.shadow_map.as_ref(),
             glass: maps.glass.as_ref(),
-            texture: light.texture.as_ref(),
+            texture: light.texture.as_deref(),
         })
         .collect()
 }

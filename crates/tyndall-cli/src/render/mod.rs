@@ -9,7 +9,7 @@ pub(crate) use cpu::{Buffers, LightMaps};
 
 use tyndall::{
     camera::CameraRays,
-    frame::{Camera, Medium},
+    frame::{Camera, Emitter, Light, Medium},
     physics::medium::Optics,
     techniques::{Technique, reference},
     temporal::{Reuse, ReuseMask, ReuseShow},
@@ -57,7 +57,7 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Gets ready for frames that differ from this one in nodes' places, camera, lights' places and medium alone.
+    /// Gets ready for frames that differ from this one in nodes' places, camera, lights' places and pictures, and medium alone.
     ///
     /// # Errors
     /// As for [`render`].
@@ -77,6 +77,11 @@ impl<'a> Session<'a> {
                 None
             }
             Backend::Gpu(gpu) => {
+                let is_area = |light: &Light| matches!(light.emitter, Emitter::Rect { .. });
+                let has_area = setup.frame.lights.iter().any(is_area);
+                if has_area && setup.tracer.has_tinted_glass() {
+                    eprintln!("note: on the GPU coloured glass tints no light of rectangles");
+                }
                 let reuse = temporal.map(reuse);
                 Some(gpu::Pipeline::new(setup, reuse, gpu, needs, stages)?)
             }
@@ -105,6 +110,8 @@ impl<'a> Session<'a> {
 pub(crate) struct Needs {
     in_scatter: bool,
     surface: bool,
+    /// Of rectangular lights, by the technique.
+    surface_shadows: bool,
     light_maps: bool,
 }
 
@@ -113,16 +120,19 @@ impl Needs {
     pub(crate) const IN_SCATTER: Self = Self {
         in_scatter: true,
         surface: false,
+        surface_shadows: false,
         light_maps: true,
     };
 
     fn of(layers: &[Layer], technique: &Technique) -> Self {
         let any = |wanted: [Layer; 2]| layers.iter().any(|layer| wanted.contains(layer));
-        let in_scatter = any([Layer::Final, Layer::Inscatter]);
         let surface = any([Layer::Final, Layer::Surface]);
+        let surface_shadows = surface && matches!(technique, Technique::ImperfectVoxelized(_));
+        let in_scatter = surface_shadows || any([Layer::Final, Layer::Inscatter]);
         Self {
             in_scatter,
             surface,
+            surface_shadows,
             light_maps: surface || (in_scatter && reads_shadow_maps(technique)),
         }
     }
@@ -203,17 +213,25 @@ mod tests {
     #[test]
     fn only_what_layers_need_is_computed() {
         let march = Technique::default();
+        let voxels = Technique::from_name("ivsv").unwrap();
         let traced = Technique::Reference(reference::Params::default());
-        for (layers, technique, in_scatter, surface, light_maps) in [
-            (&[Layer::Depth][..], &march, false, false, false),
-            (&[Layer::Inscatter], &march, true, false, true),
-            (&[Layer::Inscatter], &traced, true, false, false),
-            (&[Layer::Final], &traced, true, true, true),
-            (&[Layer::Surface, Layer::Depth], &march, false, true, true),
+        for (layers, technique, [in_scatter, surface, surface_shadows, light_maps]) in [
+            (&[Layer::Depth][..], &march, [false; 4]),
+            (&[Layer::Inscatter], &march, [true, false, false, true]),
+            (&[Layer::Inscatter], &traced, [true, false, false, false]),
+            (&[Layer::Final], &traced, [true, true, false, true]),
+            (
+                &[Layer::Surface, Layer::Depth],
+                &march,
+                [false, true, false, true],
+            ),
+            (&[Layer::Inscatter], &voxels, [true, false, false, true]),
+            (&[Layer::Surface], &voxels, [true; 4]),
         ] {
             let expected = Needs {
                 in_scatter,
                 surface,
+                surface_shadows,
                 light_maps,
             };
             assert_eq!(Needs::of(layers, technique), expected, "{layers:?}");

@@ -29,7 +29,7 @@ pub struct LightSpec {
 /// The picture a light shines through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureSpec {
-    /// The picture file.
+    /// The picture file, or the pattern of one a frame (`####` or `%04d`).
     pub file: PathBuf,
     /// Where the shot names it.
     pub location: Location,

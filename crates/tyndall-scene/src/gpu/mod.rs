@@ -31,5 +31,6 @@ pub use error::GpuSceneError;
 pub use occluders::SceneOccluders;
 pub use points::upload_point_cloud;
 pub use renderer::SceneRenderer;
+pub use shade::SurfaceLights;
 pub use targets::{GBufferTargets, GlassMapTarget, ShadowMapTarget};
 pub use texture::upload_light_texture;

@@ -1,7 +1,6 @@
 //! The uploaded scene with its pipelines.
 
 use tyndall::{
-    LightInputs,
     frame::{Camera, Emitter, Frame, ShadowProjection},
     gpu::PassTimer,
 };
@@ -13,7 +12,7 @@ use super::{
     glass::GlassPipelines,
     material::has_tinted_glass,
     mesh::DrawClass,
-    shade::ShadePipelines,
+    shade::{ShadePipelines, SurfaceLights},
     shadow_map::ShadowMapPipelines,
     targets::{GBufferTargets, GlassMapTarget, ShadowMapTarget},
     uploaded::UploadedScene,
@@ -120,15 +119,14 @@ impl SceneRenderer {
     /// [`SceneRenderer::new`] and the size of `g_buffer`; what was there is lost. It is [`crate::shading::shade`] on the GPU:
     /// Lambert surfaces under the frame's lights, or the sky, without the medium between them and the eye.
     ///
-    /// `g_buffer` was recorded with the frame's camera; `lights` has one entry a light of the frame, in the same order.
-    /// A light without a shadow map, glass or texture is unshadowed, untinted or white.
+    /// `g_buffer` was recorded with the frame's camera.
     pub fn shade(
         &self,
         encoder: &mut CommandEncoder,
         target: &TextureView,
         g_buffer: &GBufferTargets,
         frame: &Frame,
-        lights: &[LightInputs<'_>],
+        lights: SurfaceLights<'_>,
         timer: Option<&mut PassTimer>,
     ) {
         self.shade.record(

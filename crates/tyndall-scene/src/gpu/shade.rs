@@ -35,6 +35,16 @@ const ADD: BlendState = {
     }
 };
 
+/// What lights surfaces, besides the frame: one entry a light of it, in the same order.
+#[derive(Clone, Copy)]
+pub struct SurfaceLights<'a> {
+    /// A light without a shadow map, glass or texture is unshadowed, untinted or white.
+    pub inputs: &'a [LightInputs<'a>],
+    /// What each pixel's direct light is multiplied by (rgb), of the G-buffer's size: of a rectangular light, what
+    /// [`tyndall::EffectView::surface_light_visibility`] has. Lights that the slice does not reach have none.
+    pub visibility: &'a [Option<&'a TextureView>],
+}
+
 pub(super) struct ShadePipelines {
     view_layout: BindGroupLayout,
     light_layout: BindGroupLayout,
@@ -90,7 +100,7 @@ impl ShadePipelines {
         encoder: &mut CommandEncoder,
         target: &TextureView,
         g_buffer: &GBufferTargets,
-        (frame, lights): (&Frame, &[LightInputs<'_>]),
+        (frame, lights): (&Frame, SurfaceLights<'_>),
         timer: Option<&mut PassTimer>,
     ) {
         let rays = CameraRays::new(&frame.camera, g_buffer.size());
@@ -105,8 +115,10 @@ impl ShadePipelines {
         pass.set_pipeline(&self.base);
         pass.draw(0..3, 0..1);
         pass.set_pipeline(&self.light);
-        for (light, inputs) in frame.lights.iter().zip(lights) {
-            pass.set_bind_group(1, &self.light_group(device, light, inputs, &rays), &[]);
+        for (i, (light, inputs)) in frame.lights.iter().zip(lights.inputs).enumerate() {
+            let visibility = lights.visibility.get(i).copied().flatten();
+            let light = (light, inputs, visibility);
+            pass.set_bind_group(1, &self.light_group(device, light, &rays), &[]);
             pass.draw(0..3, 0..1);
         }
     }
@@ -135,11 +147,11 @@ impl ShadePipelines {
     fn light_group(
         &self,
         device: &Device,
-        light: &Light,
-        inputs: &LightInputs<'_>,
+        (light, inputs, visibility): (&Light, &LightInputs<'_>, Option<&TextureView>),
         rays: &CameraRays,
     ) -> BindGroup {
-        let uniform = ShadeLightUniform::new(light, inputs, rays.eye);
+        let mut uniform = ShadeLightUniform::new(light, inputs, rays.eye);
+        uniform.visibility = visibility.is_some().into();
         let absent = &self.absent;
         create_bind_group(
             device,
@@ -150,6 +162,7 @@ impl ShadePipelines {
                 BindingResource::TextureView(inputs.glass.unwrap_or(&absent.glass)),
                 BindingResource::TextureView(inputs.texture.unwrap_or(&absent.picture)),
                 BindingResource::Sampler(&self.picture_sampler),
+                BindingResource::TextureView(visibility.unwrap_or(&absent.picture)),
             ],
         )
     }
@@ -205,6 +218,10 @@ fn light_layout(device: &Device) -> BindGroupLayout {
                 TextureViewDimension::D2,
             ),
             BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            texture(
+                TextureSampleType::Float { filterable: false },
+                TextureViewDimension::D2,
+            ),
         ],
     )
 }

@@ -151,7 +151,8 @@ mod tests {
                     clip_from_world,
                     faces,
                     standard_depth,
-                    glass_layers
+                    glass_layers,
+                    visibility
                 }),
             ),
         ] {

@@ -109,7 +109,7 @@ pub(super) struct ShadeLightUniform {
     pub(super) faces: u32,
     pub(super) standard_depth: u32,
     pub(super) glass_layers: u32,
-    _pad: u32,
+    pub(super) visibility: u32,
 }
 
 impl ShadeLightUniform {

@@ -7,7 +7,10 @@ use tyndall::{
     techniques::Technique,
 };
 use tyndall_scene::{
-    gpu::{GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget, upload_light_texture},
+    gpu::{
+        GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget, SurfaceLights,
+        upload_light_texture,
+    },
     shading::shade,
     trace::{GBuffer, GLASS_LAYERS, Tracer},
 };
@@ -47,10 +50,14 @@ fn lit_surfaces_are_the_cpus() {
         for (name, light, maps) in &lights {
             let frame = frame(camera, *light);
             record(gpu, |encoder| {
-                renderer.shade(encoder, &view, &g_buffer, &frame, &[maps.gpu()], None);
+                let lights = SurfaceLights {
+                    inputs: &[maps.gpu()],
+                    visibility: &[],
+                };
+                renderer.shade(encoder, &view, &g_buffer, &frame, lights, None);
             });
             let found = channels(&read(gpu, &target), 4, 3);
-            let expected = shade(&cpu_g_buffer, &frame, &[maps.cpu()]).concat();
+            let expected = shade(&cpu_g_buffer, &frame, &[maps.cpu()], None).concat();
             assert!(found.iter().all(|v| v.is_finite()));
             let error = rel_mae(&found, &expected, size);
             // lavapipe: 4.0e-4 at most with a shadow map, where a texel's depth is that of the point itself within
@@ -60,6 +67,54 @@ fn lit_surfaces_are_the_cpus() {
             assert!(error < bound, "{camera_name} {name}: relMAE {error:.2e}");
         }
     }
+}
+
+/// Direct light is multiplied by the picture of visibility, ambient light is not.
+#[test]
+fn visibility_scales_direct_light() {
+    let Some(gpu) = device_or_skip("surfaces lit through a picture of visibility") else {
+        return;
+    };
+    let mut scene = clutter(200);
+    for material in &mut scene.materials {
+        material.emissive = [0.0; 3];
+    }
+    let renderer = renderer(gpu, &scene);
+    let size = [64, 48];
+    let g_buffer = GBufferTargets::new(&gpu.device, size).unwrap();
+    let target = color_target(gpu, size);
+    let view = target.create_view(&Default::default());
+    let (_, camera) = cameras()[0];
+    let (_, light) = shaded_lights()[0];
+    let frame = frame(camera, light);
+    record(gpu, |encoder| {
+        renderer.g_buffer(encoder, &g_buffer, &camera, None)
+    });
+    let lit = |visibility: &[Option<&wgpu::TextureView>]| {
+        let lights = SurfaceLights {
+            inputs: &[LightInputs::default()],
+            visibility,
+        };
+        record(gpu, |encoder| {
+            renderer.shade(encoder, &view, &g_buffer, &frame, lights, None);
+        });
+        channels(&read(gpu, &target), 4, 3)
+    };
+    let constant = |value: f32| {
+        let texture = LightTexture {
+            size,
+            texels: vec![[value; 3]; (size[0] * size[1]) as usize],
+        };
+        let texture = upload_light_texture(&gpu.device, &gpu.queue, &texture).unwrap();
+        lit(&[Some(&texture.create_view(&Default::default()))])
+    };
+    let [none, half, all] = [0.0, 0.5, 1.0].map(constant);
+    assert_eq!(lit(&[]), all);
+    assert_eq!(lit(&[None]), all);
+    let mean: Vec<f32> = none.iter().zip(&all).map(|(a, b)| 0.5 * (a + b)).collect();
+    // lavapipe: 3e-8.
+    assert!(rel_mae(&half, &mean, size) < 1e-6);
+    assert!(rel_mae(&none, &all, size) > 0.3);
 }
 
 fn frame(camera: Camera, light: Light) -> Frame {

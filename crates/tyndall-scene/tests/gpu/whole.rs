@@ -11,7 +11,7 @@ use tyndall::{
 use tyndall_scene::{
     builtin::builtin,
     framing::{Framing, frame_scene},
-    gpu::{GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget},
+    gpu::{GBufferTargets, GlassMapTarget, SceneRenderer, ShadowMapTarget, SurfaceLights},
     load::load,
     scene::Scene,
     shading::shade,
@@ -70,7 +70,11 @@ fn rasterised(gpu: &TestDevice, renderer: &SceneRenderer, frame: &Frame) -> [Vec
             ..LightInputs::default()
         };
         renderer.g_buffer(encoder, &g_buffer, &frame.camera, None);
-        renderer.shade(encoder, &view, &g_buffer, frame, &[inputs], None);
+        let lights = SurfaceLights {
+            inputs: &[inputs],
+            visibility: &[],
+        };
+        renderer.shade(encoder, &view, &g_buffer, frame, lights, None);
     });
     [
         channels(&read(gpu, &target), 4, 3),
@@ -95,7 +99,7 @@ fn traced(tracer: &Tracer, frame: &Frame) -> [Vec<f32>; 2] {
         texture: None,
     };
     let g_buffer = tracer.g_buffer(&frame.camera, SIZE, &quiet);
-    let picture = shade(&g_buffer, frame, &[inputs]);
+    let picture = shade(&g_buffer, frame, &[inputs], None);
     [picture.concat(), g_buffer.depth]
 }
 

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     camera::CameraRays,
-    effect::{Count, CountValue, LightInputs},
+    effect::{Count, CountValue, LightInputs, SurfaceShadows},
     frame::{Frame, Light},
 };
 
@@ -69,6 +69,10 @@ pub(crate) struct LightScope<'a> {
     /// A picture of the view's size that the last pass reads at its own pixel, and that may change where neither depth nor
     /// shadow map do; half floats at most.
     pub(crate) witness: Option<wgpu::TextureView>,
+    /// Whether shadows on surfaces are asked for, and what is known of the surfaces.
+    pub(crate) surface_shadows: Option<&'a SurfaceShadows>,
+    /// How much of the light reaches each pixel's surface, where the technique says so.
+    pub(crate) visibility: Option<wgpu::TextureView>,
     /// What the frame's passes count.
     pub(crate) counts: &'a mut Vec<Count>,
 }

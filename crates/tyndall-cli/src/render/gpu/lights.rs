@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use tyndall::{
     LightInputs, Occluder, PointCloud,
+    cpu::LightTexture,
     frame::{Emitter, Light},
 };
 use tyndall_scene::gpu::{
@@ -24,7 +25,8 @@ const CLOUD: u32 = 1 << 19;
 pub(super) struct LightTargets {
     pub(super) shadow_map: Option<ShadowMapTarget>,
     pub(super) glass: Option<GlassMapTarget>,
-    texture: Option<TextureView>,
+    /// The picture the light shines through, and what it is of.
+    texture: Option<(TextureView, Arc<LightTexture>)>,
     /// Of a rectangular light: the scene's surfaces, and the texels a side of a sample's map.
     points: Option<(Buffer, u32)>,
     /// The scene that the points are of.
@@ -39,7 +41,7 @@ impl LightTargets {
         renderer: &SceneRenderer,
         needs: Needs,
     ) -> Result<Self, Failure> {
-        let Gpu { device, queue, .. } = gpu;
+        let device = &gpu.device;
         let (light, extra) = (&setup.frame.lights[index], &setup.lights[index]);
         let projection = light.shadow.as_ref().filter(|_| needs.light_maps);
         let shadow_map = projection
@@ -52,27 +54,32 @@ impl LightTargets {
             .map(|shadow_map| GlassMapTarget::new(device, shadow_map))
             .transpose()
             .map_err(Failure::device)?;
-        let texture = extra
-            .texture
-            .as_ref()
-            .map(|texture| upload_light_texture(device, queue, texture))
-            .transpose()
-            .map_err(Failure::device)?;
         Ok(Self {
             points: points(setup, index, gpu, needs),
             drawn: Arc::clone(&setup.tracer),
             shadow_map,
             glass,
-            texture: texture.map(|texture| texture.create_view(&Default::default())),
+            texture: texture(setup, index, gpu)?,
         })
     }
 
-    /// Takes new points where the scene has moved.
-    pub(super) fn follow(&mut self, setup: &Setup, index: usize, gpu: &Gpu, needs: Needs) {
+    /// Takes new points where the scene has moved, and another picture where there is one.
+    pub(super) fn follow(
+        &mut self,
+        setup: &Setup,
+        index: usize,
+        gpu: &Gpu,
+        needs: Needs,
+    ) -> Result<(), Failure> {
+        let held = self.texture.as_ref().map(|(_, of)| Arc::as_ptr(of));
+        if held != setup.lights[index].texture.as_ref().map(Arc::as_ptr) {
+            self.texture = texture(setup, index, gpu)?;
+        }
         if !Arc::ptr_eq(&self.drawn, &setup.tracer) {
             self.points = points(setup, index, gpu, needs);
             self.drawn = Arc::clone(&setup.tracer);
         }
+        Ok(())
     }
 
     /// Whether there is a shadow map where the light needs one.
@@ -85,6 +92,22 @@ impl LightTargets {
             + self.glass.as_ref().map_or(0, GlassMapTarget::bytes)
             + self.points.as_ref().map_or(0, |(buffer, _)| buffer.size())
     }
+}
+
+/// The picture that the light shines through in this frame, uploaded.
+fn texture(
+    setup: &Setup,
+    index: usize,
+    gpu: &Gpu,
+) -> Result<Option<(TextureView, Arc<LightTexture>)>, Failure> {
+    let Some(texture) = &setup.lights[index].texture else {
+        return Ok(None);
+    };
+    let uploaded = upload_light_texture(&gpu.device, &gpu.queue, texture);
+    let view = uploaded
+        .map_err(Failure::device)?
+        .create_view(&Default::default());
+    Ok(Some((view, Arc::clone(texture))))
 }
 
 /// The scene's surfaces, where the light is a rectangle.
@@ -105,7 +128,7 @@ pub(super) fn light_inputs<'a>(
         .map(|light| LightInputs {
             shadow_map: light.shadow_map.as_ref().map(ShadowMapTarget::view),
             glass: light.glass.as_ref().map(GlassMapTarget::view),
-            texture: light.texture.as_ref(),
+            texture: light.texture.as_ref().map(|(view, _)| view),
             occluders,
             points: light.points.as_ref().map(|(points, map_side)| PointCloud {
                 points,

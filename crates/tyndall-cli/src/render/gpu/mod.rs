@@ -49,6 +49,7 @@ impl<'a> Pipeline<'a> {
             let view = effect.create_view(&gpu.device, setup.size);
             let mut view = view.map_err(Failure::device)?;
             view.set_reuse(reuse);
+            view.set_surface_shadows(needs.surface_shadows.then(|| world.surface_shadows()));
             Ok(Self {
                 view,
                 reuse,
@@ -80,8 +81,12 @@ impl<'a> Pipeline<'a> {
         let mut encoder = device.create_command_encoder(&Default::default());
         self.timestamps.begin(&mut encoder);
         self.draw_world(setup, &mut encoder);
+        // Whatever blocks light on surfaces comes out of the same passes.
         if self.needs.in_scatter {
             self.draw_in_scatter(setup, &mut encoder)?;
+        }
+        if self.needs.surface {
+            self.draw_surfaces(setup, &mut encoder);
         }
         queue.submit([encoder.finish()]);
         // The composite draws on the surface, so that is read first.
@@ -120,9 +125,16 @@ impl<'a> Pipeline<'a> {
         let (world, timestamps) = (&self.world, &mut self.timestamps);
         world.draw_light_maps(setup, encoder, timestamps.timer());
         world.draw_g_buffer(setup, encoder, timestamps.timer());
-        if self.needs.surface {
-            world.draw_surfaces(setup, encoder, &self.color.view, timestamps.timer());
-        }
+    }
+
+    fn draw_surfaces(&mut self, setup: &Setup, encoder: &mut CommandEncoder) {
+        let lights = 0..setup.frame.lights.len();
+        let visibility: Vec<_> = lights
+            .map(|light| self.view.surface_light_visibility(light))
+            .collect();
+        let (target, timer) = (&self.color.view, self.timestamps.timer());
+        self.world
+            .draw_surfaces(setup, encoder, target, &visibility, timer);
     }
 
     fn draw_in_scatter(

@@ -2,12 +2,12 @@
 
 use std::cell::OnceCell;
 
-use tyndall::{LightInputs, Occluder, gpu::PassTimer, temporal::Reuse};
+use tyndall::{LightInputs, Occluder, SurfaceShadows, gpu::PassTimer, temporal::Reuse};
 use tyndall_scene::gpu::{
-    GBufferTargets, SceneOccluders, SceneRenderer,
+    GBufferTargets, SceneOccluders, SceneRenderer, SurfaceLights,
     readback::{self, ReadbackError},
 };
-use wgpu::{CommandEncoder, TextureFormat, TextureView};
+use wgpu::{CommandEncoder, TextureFormat, TextureView, TextureViewDescriptor};
 
 use super::lights::{LightTargets, light_inputs};
 use crate::{
@@ -47,7 +47,7 @@ impl World {
     }
 
     /// Moves the nodes to where they are in this setup, which differs from the one given first in the places of nodes,
-    /// camera and lights alone.
+    /// camera and lights, and in the lights' pictures alone.
     pub(crate) fn place(&mut self, setup: &Setup, gpu: &Gpu, needs: Needs) -> Result<(), Failure> {
         self.renderer.place(&gpu.queue, &setup.scene);
         for (index, targets) in self.lights.iter_mut().enumerate() {
@@ -55,7 +55,7 @@ impl World {
             if !targets.suits(&setup.frame.lights[index], needs) {
                 *targets = LightTargets::new(setup, index, gpu, &self.renderer, needs)?;
             }
-            targets.follow(setup, index, gpu, needs);
+            targets.follow(setup, index, gpu, needs)?;
         }
         Ok(())
     }
@@ -98,22 +98,34 @@ impl World {
             .g_buffer(encoder, &self.g_buffer, camera, timer);
     }
 
-    /// Records the lit surfaces on `target`.
+    /// Records the lit surfaces on `target`; `visibility` is what direct light is multiplied by, light by light.
     pub(crate) fn draw_surfaces(
         &self,
         setup: &Setup,
         encoder: &mut CommandEncoder,
         target: &TextureView,
+        visibility: &[Option<&TextureView>],
         timer: Option<&mut PassTimer>,
     ) {
-        let (lights, frame) = (self.light_inputs(None), &setup.frame);
+        let lights = SurfaceLights {
+            inputs: &self.light_inputs(None),
+            visibility,
+        };
         self.renderer
-            .shade(encoder, target, &self.g_buffer, frame, &lights, timer);
+            .shade(encoder, target, &self.g_buffer, &setup.frame, lights, timer);
     }
 
     /// What the camera sees.
     pub(crate) fn g_buffer(&self) -> &GBufferTargets {
         &self.g_buffer
+    }
+
+    /// What shadows on the surfaces that the camera sees are made of.
+    pub(crate) fn surface_shadows(&self) -> SurfaceShadows {
+        let normals = self.g_buffer.normal();
+        SurfaceShadows {
+            normals: Some(normals.create_view(&TextureViewDescriptor::default())),
+        }
     }
 
     /// The lights' inputs, as tyndall takes them.

@@ -11,7 +11,7 @@ fn shade_light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4
     let normal = textureLoad(shade_normal, pixel, 0).xyz;
     var irradiance = shade_direct(point, normal);
     if any(irradiance > vec3f(0.0)) {
-        irradiance *= shade_visibility(point, normal);
+        irradiance *= shade_visibility(pixel, point, normal);
     }
     irradiance += shade_ambient(point, normal);
     let albedo = textureLoad(shade_base_color, pixel, 0).rgb;

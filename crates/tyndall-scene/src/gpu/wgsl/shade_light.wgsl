@@ -37,6 +37,8 @@ struct ShadeLight {
     standard_depth: u32,
     // Layers a face; 0 without glass.
     glass_layers: u32,
+    // 1 where a picture says how much of the light reaches each pixel's surface.
+    visibility: u32,
 }
 
 struct ShadeIncident {

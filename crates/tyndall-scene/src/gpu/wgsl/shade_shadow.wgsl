@@ -1,7 +1,8 @@
-// How much of a light reaches a surface, from its shadow map; see shading.rs for the reasons.
+// How much of a light reaches a surface, from its shadow map or from a picture that says so; see shading.rs for the reasons.
 
 @group(1) @binding(1) var shade_shadow_map: texture_depth_2d_array;
 @group(1) @binding(2) var shade_glass: texture_2d_array<u32>;
+@group(1) @binding(5) var shade_seen: texture_2d<f32>;
 
 // The face whose axis is nearest to the direction from the light.
 fn shade_shadow_face(point: vec3f) -> u32 {
@@ -57,8 +58,11 @@ fn shade_texel_tint(face: u32, texel: vec2f, depth: f32) -> vec3f {
     return tint;
 }
 
-// What light that reaches a surface is multiplied by: four texels, weighted bilinearly.
-fn shade_visibility(surface: vec3f, normal: vec3f) -> vec3f {
+// What light that reaches a surface is multiplied by: what a picture says, or four texels, weighted bilinearly.
+fn shade_visibility(pixel: vec2u, surface: vec3f, normal: vec3f) -> vec3f {
+    if shade_choice(shade_light.visibility) == 1u {
+        return textureLoad(shade_seen, pixel, 0).rgb;
+    }
     if shade_choice(shade_light.faces) == 0u {
         return vec3f(1.0);
     }

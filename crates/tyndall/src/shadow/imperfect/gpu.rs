@@ -155,7 +155,7 @@ impl AreaLight {
 }
 
 impl Maps {
-    /// Of `points` points each, or half as many as texels where that is 0; as many at once as the device binds, up to
+    /// Of `points` points each, or as many as texels where that is 0; as many at once as the device binds, up to
     /// `at_once`, where each takes `bytes` besides its map.
     pub(crate) fn new(
         inputs: &LightInputs<'_>,
@@ -166,7 +166,7 @@ impl Maps {
     ) -> Self {
         let cloud = inputs.points.map_or(0, |cloud| cloud.points.size() / 16) as u32;
         let side = inputs.points.map_or(0, |cloud| cloud.map_side);
-        let points = if points == 0 { side * side / 2 } else { points };
+        let points = if points == 0 { side * side } else { points };
         let one = Self {
             side,
             points: points.min(cloud),

@@ -19,20 +19,17 @@ fn ivsv_gather(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= ivsv.size) {
         return;
     }
-    let pixel = min(id.xy * ivsv.pitch, vec2u(frame.camera.size) - 1u);
-    let ray = frame_ray(vec4f(vec2f(pixel) + 0.5, 0.0, 1.0));
+    let ray = ivsv_ray(id.xy);
     let span = light_reach(ray);
-    let turns = ivsv.turns;
-    let own = (id.x % 3u + 3u * (id.y % 3u)) % turns;
-    let first = imperfect_batch.first;
     var sum = vec3f(0.0);
     var count = 0.0;
-    for (var i = (own + turns - first % turns) % turns; i < imperfect_batch.count; i += turns) {
+    let turns = ivsv.turns;
+    for (var i = ivsv_first(id.xy, turns); i < imperfect_batch.count; i += turns) {
         sum += ivsv_sample(ray, span, i);
         count += 1.0;
     }
     let index = id.y * ivsv.size.x + id.x;
-    let before = select(vec4f(0.0), ivsv_sums[index], first > 0u);
+    let before = select(vec4f(0.0), ivsv_sums[index], imperfect_batch.first > 0u);
     ivsv_sums[index] = before + vec4f(sum, count);
 }
 

@@ -1,9 +1,11 @@
 //! The GPU side: maps, voxels and their scan of a batch of samples at a time, gathered into one picture.
 
+use std::sync::OnceLock;
+
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
-use super::{Gather, Params};
+use super::{Gather, Params, surface};
 use crate::{
     cpu::LightSource,
     effect::{CountValue, LightInputs},
@@ -25,43 +27,46 @@ use crate::{
 };
 
 const RECTIFY: &str = include_str!("rectify.wgsl");
-const PARAMS: &str = include_str!("params.wgsl");
+pub(super) const PARAMS: &str = include_str!("params.wgsl");
 const GATHER: &str = include_str!("gather.wgsl");
+pub(super) const FILTER: &str = include_str!("filter.wgsl");
 const RESOLVE: &str = include_str!("resolve.wgsl");
 
 /// Light rays that a workgroup of `rectify.wgsl` takes.
 const RAYS_A_WORKGROUP: u32 = 512;
-/// Pixels a side that a workgroup of `gather.wgsl` takes.
-const TILE: u32 = 8;
+/// Pixels a side that a workgroup of `gather.wgsl` and `surface.wgsl` takes.
+pub(super) const TILE: u32 = 8;
 
 /// `IvsvParams` of `params.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct ParamsUniform {
-    size: [u32; 2],
+pub(super) struct ParamsUniform {
+    pub(super) size: [u32; 2],
     pitch: u32,
     turns: u32,
     weighting: u32,
-    pad: [u32; 3],
+    taps: u32,
+    pad: [u32; 2],
 }
 
 impl ParamsUniform {
     fn new(params: &Params, size: [u32; 2]) -> Self {
-        let (pitch, turns) = match params.gather {
-            Gather::Full => (1, 1),
-            Gather::Interleaved => (1, 9),
-            Gather::Quarter => (2, 1),
+        let (pitch, turns, taps) = match params.gather {
+            Gather::Full => (1, 1, 1),
+            Gather::Interleaved => (1, 9, 9),
+            Gather::Quarter => (2, 1, 4),
         };
         Self {
             size: size.map(|n| n.div_ceil(pitch)),
             pitch,
             turns,
             weighting: params.weighting as u32,
-            pad: [0; 3],
+            taps,
+            pad: [0; 2],
         }
     }
 
-    fn pixels(&self) -> u64 {
+    pub(super) fn pixels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 }
@@ -74,6 +79,8 @@ pub(crate) struct Programs {
     rectify: ComputeProgram,
     gather: ComputeProgram,
     resolve: ScreenProgram,
+    /// Made when they are first asked for.
+    surface: OnceLock<surface::Programs>,
 }
 
 impl Programs {
@@ -99,7 +106,7 @@ impl Programs {
         let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, GATHER];
         let gather = compute("gather", &modules, "ivsv_gather", &own);
         let own = [batch, layout::uniform::<ParamsUniform>(1), read(2)];
-        let modules = [IMPERFECT, PARAMS, RESOLVE];
+        let modules = [IMPERFECT, PARAMS, FILTER, RESOLVE];
         Self {
             maps: imperfect::Programs::new(device, shared),
             fill: Fill::new(device, shared),
@@ -107,20 +114,21 @@ impl Programs {
             rectify,
             gather,
             resolve: ScreenProgram::new(device, shared, "resolve", &modules, "ivsv_resolve", &own),
+            surface: OnceLock::new(),
         }
     }
 }
 
 /// What all batches of a light share.
-struct Buffers {
-    light: imperfect::Buffers,
-    grids: wgpu::Buffer,
-    voxels: wgpu::Buffer,
-    params: wgpu::Buffer,
+pub(super) struct Buffers {
+    pub(super) light: imperfect::Buffers,
+    pub(super) grids: wgpu::Buffer,
+    pub(super) voxels: wgpu::Buffer,
+    pub(super) params: wgpu::Buffer,
     sums: wgpu::Buffer,
 }
 
-/// The passes of one light: five a batch, and two.
+/// The passes of one light: five a batch, and two; one more of each where shadows on surfaces are asked for.
 pub(crate) fn passes(
     params: &Params,
     programs: &Programs,
@@ -142,6 +150,11 @@ pub(crate) fn passes(
         params: scope.uniform("ivsv params", &picture),
         sums: scope.storage("gathered light", 16 * picture.pixels()),
     };
+    let surface = scope.surface_shadows.map(|shadows| {
+        let sums = surface::Sums::new(scope, shadows, &picture);
+        let make = || surface::Programs::new(scope.device, scope.shared);
+        (programs.surface.get_or_init(make), sums)
+    });
     let mut passes = vec![sample];
     for batch in 0..buffers.light.batches.values.len() as u32 {
         if let Some(cloud) = scope.inputs.points {
@@ -159,6 +172,12 @@ pub(crate) fn passes(
             ));
         }
         passes.push(gather(programs, scope, &buffers, batch, &picture));
+        if let Some((programs, sums)) = &surface {
+            passes.push(sums.add(programs, scope, &buffers, batch, &picture));
+        }
+    }
+    if let Some((programs, sums)) = &surface {
+        passes.push(sums.resolve(programs, scope, &buffers));
     }
     let resources = [
         buffers.light.batches.binding(0),
