@@ -7,6 +7,9 @@
 const DECIDE_TOO_MUCH: f32 = 0.7;
 // Frames until such a mask is asked for again.
 const DECIDE_REST: u32 = 30u;
+// The same of a moving camera, which may have made a cut and go on slowly.
+const DECIDE_TOO_MUCH_LOST: f32 = 0.9;
+const DECIDE_REST_LOST: u32 = 4u;
 // Where the sizes of the dispatch and the draw stand that take over another camera's picture.
 const DECIDE_REPROJECT: u32 = 48u;
 const DECIDE_RESTORE: u32 = 51u;
@@ -16,8 +19,12 @@ fn decide() {
     let pixels = reuse.pixels.x * reuse.pixels.y;
     let stale = atomicLoad(&decide_state.stale);
     let covered = select(stale, pixels, reuse.reach == REUSE_PICTURE && stale > 0u);
-    if decide_state.mode >= REUSE_MASKED && f32(covered) > DECIDE_TOO_MUCH * f32(pixels) {
+    let share = f32(covered) / f32(pixels);
+    if decide_state.mode == REUSE_MASKED && share > DECIDE_TOO_MUCH {
         decide_state.rest = DECIDE_REST;
+    }
+    if decide_state.mode == REUSE_REPROJECT && share > DECIDE_TOO_MUCH_LOST {
+        decide_state.rest = DECIDE_REST_LOST;
     }
     let is_new = decide_state.generation != reuse.generation;
     let is_kin = reuse.kin != 0u && decide_state.kin == reuse.kin;

@@ -4,7 +4,7 @@
 struct Reproject {
     camera: Camera, // of the frame before
     eye: vec3f, // its eye, relative to this frame's [m]
-    tolerance: f32, // relative error
+    tolerance: f32, // of errors, over the brightest value of a tile
     rounding: f32, // relative, of the kept picture's format
 }
 
@@ -22,7 +22,9 @@ const REPROJECT_PLACES: u32 = 2u;
 // The eye's way is followed for so many frames, so that it meets with shadows.
 const REPROJECT_FRAMES: f32 = 16.0;
 // A pixel's change over the mean of its tile.
-const REPROJECT_ODDS: f32 = 4.0;
+const REPROJECT_ODDS: f32 = 3.0;
+// What errors may come to, over their estimates.
+const REPROJECT_MARGIN: f32 = 1.5;
 // Depths that differ by more are of different surfaces.
 const REPROJECT_STEP: f32 = 0.05;
 
@@ -65,7 +67,7 @@ fn reproject_tile(@builtin(global_invocation_id) id: vec3u, @builtin(local_invoc
 
 // What is remembered of a pixel, where its error is small beside the brightest value of the tile.
 fn reproject_memory(found: ReprojectPixel, change: vec3f, brightest: f32) -> u32 {
-    let error = found.error_before + reproject_most(found.error + change);
+    let error = found.error_before + REPROJECT_MARGIN * reproject_most(found.error + change);
     if found.is_there && error <= reproject.tolerance * brightest {
         return found.age | ((bitcast<u32>(error) + REUSE_AGE) & REUSE_ERROR);
     }
@@ -80,7 +82,7 @@ fn reproject_ray(origin: vec3f, end: vec3f) -> Ray {
 }
 
 // An estimate, of few samples, of the integral of |difference| of the light that the two cameras' rays to the same end
-// collect at corresponding places: no less than the difference of the integrals.
+// collect at the same shares of their ways: no less than the difference of the integrals.
 fn reproject_change(ray: Ray, end: vec3f, depth_before: f32, lane: u32) -> vec3f {
     let before = select(reproject.eye, end - depth_before * reproject.camera.forward, camera_is_orthographic());
     let other = reproject_ray(ray.origin + REPROJECT_FRAMES * (before - ray.origin), end);
@@ -163,7 +165,7 @@ fn reproject_pixel(ray: Ray, seen: vec3f) -> ReprojectPixel {
         depth += weight * select(1.0 / tap_depth, tap_depth, camera_is_orthographic());
     }
     depth = select(1.0 / depth, depth, camera_is_orthographic());
-    let slack = 4.0 * fraction * (1.0 - fraction);
+    let slack = min(8.0 * fraction * (1.0 - fraction), vec2f(1.0));
     let bent = slack.x * reproject_bend(base, vec2i(1, 0)) + slack.y * reproject_bend(base, vec2i(0, 1));
     let moved = abs(depth - seen.z) / max(abs(seen.z), 1e-20) * ray.length * reproject_unshaded(ray);
     let error = bent + moved + reproject.rounding * value;
