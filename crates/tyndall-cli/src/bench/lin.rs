@@ -43,7 +43,7 @@ pub(super) const SCENES: &[(Subject, &str)] = &[
 const FRAMES: FrameRange = FrameRange { first: 0, last: 59 };
 /// Frames in a row that the thesis keeps.
 const KEPT: u32 = 3;
-/// Who walks through the church: brute force, and what is the fastest at exact pictures.
+/// Who walks: brute force, and what is the fastest at exact pictures.
 const WALKERS: [&str; 2] = ["ray-march", "min-max"];
 /// The eye's way from frame to frame [mm].
 const STEPS: [f64; 2] = [2.0, 10.0];
@@ -144,7 +144,7 @@ fn left_table(films: &Films, rows: Vec<Vec<Cell>>) -> Table {
 fn walks_table(films: &Films, rows: Vec<Vec<Cell>>) -> Table {
     let ([width, height], map, compared) = (films.compared_size, films.map, films.compared);
     Table {
-        title: format!("a camera that walks through {}", subject::SIBENIK.name),
+        title: format!("a camera that walks by {}", subject::BIG_SCENE.name),
         notes: vec![
             format!(
                 "{width} x {height} pixels, {map}^2 shadow map; {compared} frames in a row, those of all tolerances in turn; means of a frame, of the effect's passes alone"
@@ -257,10 +257,10 @@ fn walk(
         let movement = format!(
             "animation.move=[{{node='camera',translate=[[0,0,0],[{way},0,0]],rotate_deg=[[0,0,0],[0,{turn},0]]}}]"
         );
-        let technique_name = format!("technique.name={technique}");
-        let values = [technique_name.as_str(), "animation.fps=30", &movement];
+        let by = format!("technique={{name='{technique}'}}");
+        let values = [by.as_str(), "animation.fps=30", &movement];
         let (size, assets) = (films.compared_size, bench.assets.as_deref());
-        let (shot, what) = subject::SIBENIK.shot_with(&values, assets, size, films.map)?;
+        let (shot, what) = subject::BIG_SCENE.shot_with(&values, assets, size, films.map)?;
         let within = |tolerance: f32| {
             Some(Reuse {
                 reproject: Some(tolerance),
