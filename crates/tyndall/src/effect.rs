@@ -259,7 +259,12 @@ impl Effect {
         let rays = CameraRays::new(&frame.camera, view.size);
         let uniform = FrameUniform::new(frame, &rays, view.size);
         view.pool.begin(view.is_recorded);
-        view.history.begin(lights.len(), view.is_recorded);
+        let seen_from = temporal::Viewpoint {
+            camera: uniform.camera,
+            eye: rays.eye,
+        };
+        view.history
+            .begin(lights.len(), view.is_recorded, seen_from);
         let frame_uniform_buffer = view.pool.uniform(device, queue, (None, "frame"), &uniform);
         let (mut passes, mut counts) = (Vec::new(), Vec::new());
         let mut visibilities = Vec::new();
@@ -301,8 +306,7 @@ impl Effect {
                     let absent = &self.shared.absent.light;
                     let alone =
                         self.frame_group(device, &frame_uniform_buffer, inputs.depth, absent);
-                    let signature = (&uniform, &light_uniform, reuse);
-                    passes.extend(self.keep(&mut view.history, &mut scope, alone, signature));
+                    passes.extend(self.keep(&mut view.history, &mut scope, alone, reuse));
                 }
             }
             visibilities.push(scope.visibility);
@@ -346,21 +350,22 @@ impl Effect {
         history: &mut History,
         scope: &mut LightScope<'_>,
         alone: wgpu::BindGroup,
-        (frame, light, reuse): (&FrameUniform, &LightUniform, Reuse),
+        reuse: Reuse,
     ) -> Vec<Pass> {
         let technique = &scope.frame.technique;
         let make = || temporal::gpu::Programs::new(scope.device, &self.shared);
         let programs = self.reuse.get_or_init(make);
         let inputs = &scope.inputs;
-        let signature = Signature::new(frame, light, scope.variant, technique, reuse.mask, inputs);
+        let signature = Signature::new(scope.frame, scope.light, scope.variant, reuse, inputs);
         let moved = match reuse.mask {
             ReuseMask::Change => Vec::new(),
             ReuseMask::Geometry => history.moved(scope.index, inputs.occluders.unwrap_or_default()),
         };
         let frame = temporal::gpu::Frame {
             reuse,
-            generation: history.generation(scope.index, signature),
+            generations: history.generations(scope.index, signature),
             reach: technique.reach(),
+            before: history.before(),
             moved: &moved,
         };
         let kept = temporal::gpu::kept(scope);

@@ -2,101 +2,13 @@
 
 mod common;
 
-use common::{SIZE, Stage, crowd, gpu as on, noise, stages, steps, svd, technique};
+use common::{SIZE, Stage, crowd, gpu as on, noise, run::Run, stages, steps, svd, technique};
 use tyndall::{
-    CountValue, Effect, EffectView, FrameInputs, LightInputs, Occluder, OccluderMesh, PrepareError,
-    frame::Frame,
+    Occluder, OccluderMesh,
     techniques::{Technique, Value},
     temporal::{Reuse, ReuseMask, ReuseShow},
 };
-use tyndall_testkit::device::{TestDevice, device_or_skip};
-
-/// A view that is rendered frame after frame.
-struct Run<'a> {
-    gpu: &'a TestDevice,
-    effect: &'a Effect,
-    view: EffectView,
-    /// Of all shadow maps.
-    revision: Option<u64>,
-}
-
-impl<'a> Run<'a> {
-    fn new(gpu: &'a TestDevice, effect: &'a Effect, reuse: Option<Reuse>) -> Self {
-        let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
-        view.set_reuse(reuse);
-        Self {
-            gpu,
-            effect,
-            view,
-            revision: None,
-        }
-    }
-
-    fn prepare(&mut self, stage: &Stage, technique: &Technique) {
-        self.prepare_with(stage, technique, None)
-            .expect("a good stage");
-    }
-
-    fn prepare_with(
-        &mut self,
-        stage: &Stage,
-        technique: &Technique,
-        occluders: Option<&[Occluder<'_>]>,
-    ) -> Result<(), PrepareError> {
-        let frame = Frame {
-            technique: technique.clone(),
-            ..stage.frame.clone()
-        };
-        let uploaded = on::Uploaded::new(self.gpu, stage);
-        let lights = uploaded.light_inputs();
-        let shadow_revision = self.revision;
-        let with_occluders = |light| LightInputs {
-            occluders,
-            shadow_revision,
-            ..light
-        };
-        let lights: Vec<LightInputs<'_>> = lights.into_iter().map(with_occluders).collect();
-        let inputs = FrameInputs {
-            depth: &uploaded.depth,
-            lights: &lights,
-        };
-        let TestDevice { device, queue, .. } = self.gpu;
-        self.effect
-            .prepare(device, queue, &mut self.view, &inputs, &frame)
-    }
-
-    /// The output, as bits.
-    fn frame(&mut self, stage: &Stage, technique: &Technique) -> Vec<[u32; 4]> {
-        self.prepare(stage, technique);
-        self.record()
-    }
-
-    fn record(&mut self) -> Vec<[u32; 4]> {
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        self.effect.record(&mut encoder, &mut self.view, None);
-        self.gpu.queue.submit([encoder.finish()]);
-        let output = self.view.output().texture();
-        self.gpu.read_texture(output).expect("readable")
-    }
-
-    /// Stale pixels of each light.
-    fn stale(&self) -> Vec<u32> {
-        let stale = self
-            .view
-            .counts()
-            .iter()
-            .filter(|c| c.name.starts_with("stale"));
-        stale
-            .map(|count| {
-                let CountValue::Written { buffer, offset } = &count.value else {
-                    unreachable!("it is counted on the device");
-                };
-                let words: Vec<u32> = self.gpu.read_buffer(buffer).expect("readable");
-                words[*offset as usize / 4]
-            })
-            .collect()
-    }
-}
+use tyndall_testkit::device::device_or_skip;
 
 const PIXELS: u32 = SIZE[0] * SIZE[1];
 

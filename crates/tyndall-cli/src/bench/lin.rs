@@ -43,11 +43,20 @@ pub(super) const SCENES: &[(Subject, &str)] = &[
 const FRAMES: FrameRange = FrameRange { first: 0, last: 59 };
 /// Frames in a row that the thesis keeps.
 const KEPT: u32 = 3;
+/// Who walks: brute force, and what is the fastest at exact pictures.
+const WALKERS: [&str; 2] = ["ray-march", "min-max"];
+/// The eye's way from frame to frame [mm].
+const STEPS: [f64; 2] = [2.0, 10.0];
+/// The camera's turn from frame to frame [degrees].
+const TURN: f64 = 0.05;
+/// What may be wrong with a pixel that is kept as it walks.
+const TOLERANCES: [f32; 2] = [0.02, 0.1];
 
 /// Measures the suite.
 pub(super) fn run(films: &Films, bench: &Bench, stages: &mut Stages) -> Result<Report, Failure> {
     let mut times = Vec::new();
     let mut left = Vec::new();
+    let mut walks = Vec::new();
     if matches!(bench.backend, Backend::Gpu(_)) {
         for (scene, thesis) in films.scenes {
             times.push(stages.run(&format!("time {}", scene.name), |progress| {
@@ -58,6 +67,11 @@ pub(super) fn run(films: &Films, bench: &Bench, stages: &mut Stages) -> Result<R
         left = stages.run(&format!("compare {}", scene.name), |progress| {
             compare(films, &scene, bench, progress)
         })?;
+        for technique in WALKERS {
+            walks.extend(stages.run(&format!("walk by {technique}"), |progress| {
+                walk(films, technique, bench, progress)
+            })?);
+        }
     }
     if times.is_empty() {
         return Ok(Report {
@@ -66,7 +80,11 @@ pub(super) fn run(films: &Films, bench: &Bench, stages: &mut Stages) -> Result<R
         });
     }
     Ok(Report {
-        tables: vec![times_table(films, times), left_table(films, left)],
+        tables: vec![
+            times_table(films, times),
+            left_table(films, left),
+            walks_table(films, walks),
+        ],
         missing: Vec::new(),
     })
 }
@@ -118,6 +136,33 @@ fn left_table(films: &Films, rows: Vec<Vec<Cell>>) -> Table {
             "most in a frame",
             "frames with any",
             "largest error",
+        ],
+        rows,
+    }
+}
+
+fn walks_table(films: &Films, rows: Vec<Vec<Cell>>) -> Table {
+    let ([width, height], map, compared) = (films.compared_size, films.map, films.compared);
+    Table {
+        title: format!("a camera that walks by {}", subject::BIG_SCENE.name),
+        notes: vec![
+            format!(
+                "{width} x {height} pixels, {map}^2 shadow map; {compared} frames in a row, those of all tolerances in turn; means of a frame, of the effect's passes alone"
+            ),
+            format!("step: of the eye from frame to frame [mm]; it turns by {TURN} degrees besides"),
+            "tolerance: of a pixel's error; error: of the worst frame against the one computed whole, mean over mean"
+                .to_owned(),
+        ],
+        columns: vec![
+            "technique",
+            "of",
+            "step",
+            "tolerance",
+            "computed",
+            "whole ms",
+            "ms",
+            "speed-up",
+            "error",
         ],
         rows,
     }
@@ -193,6 +238,96 @@ fn time(
     }
     cells.push(Cell::text(thesis));
     Ok(cells)
+}
+
+/// Frames of a camera that walks, with several tolerances: what is computed, how long it takes and what is wrong.
+fn walk(
+    films: &Films,
+    technique: &str,
+    bench: &Bench,
+    progress: &dyn Fn(u64, u64),
+) -> Result<Vec<Vec<Cell>>, Failure> {
+    let Backend::Gpu(gpu) = &bench.backend else {
+        return Ok(Vec::new());
+    };
+    let mut rows = Vec::new();
+    for (k, step) in STEPS.into_iter().enumerate() {
+        let last = f64::from(FRAMES.last);
+        let [way, turn] = [step * 1e-3, TURN].map(|of_a_frame| of_a_frame * last);
+        let movement = format!(
+            "animation.move=[{{node='camera',translate=[[0,0,0],[{way},0,0]],rotate_deg=[[0,0,0],[0,{turn},0]]}}]"
+        );
+        let by = format!("technique={{name='{technique}'}}");
+        let values = [by.as_str(), "animation.fps=30", &movement];
+        let (size, assets) = (films.compared_size, bench.assets.as_deref());
+        let (shot, what) = subject::BIG_SCENE.shot_with(&values, assets, size, films.map)?;
+        let within = |tolerance: f32| {
+            Some(Reuse {
+                reproject: Some(tolerance),
+                ..Reuse::default()
+            })
+        };
+        let takes: Vec<Option<Reuse>> = std::iter::once(None)
+            .chain(TOLERANCES.map(within))
+            .collect();
+        let sequence = Sequence::new(&shot, FRAMES, &mut Stages::quiet())?;
+        let mut film = Film::new(sequence, &takes, gpu)?;
+        // Pipelines are made with the first frames.
+        film.frame(0)?;
+        film.frame(1)?;
+        let mut walks = [Walk::default(); 1 + TOLERANCES.len()];
+        for number in 2..films.compared {
+            let frames = film.frame(number)?;
+            let outputs = film.outputs()?;
+            for (walk, (frame, output)) in walks.iter_mut().zip(frames.iter().zip(&outputs)) {
+                walk.add(frame, output, &outputs[0], films.compared - 2);
+            }
+            let done = k as u64 * u64::from(films.compared) + u64::from(number) + 1;
+            progress(done, STEPS.len() as u64 * u64::from(films.compared));
+        }
+        let [whole, kept @ ..] = walks;
+        rows.extend(TOLERANCES.iter().zip(kept).map(|(tolerance, walk)| {
+            vec![
+                Cell::text(technique),
+                Cell::text(what.as_str()),
+                step.into(),
+                f64::from(*tolerance).into(),
+                walk.computed.into(),
+                whole.milliseconds.into(),
+                walk.milliseconds.into(),
+                (whole.milliseconds / walk.milliseconds).into(),
+                walk.error.into(),
+            ]
+        }));
+    }
+    Ok(rows)
+}
+
+/// What a take of a walk came to.
+#[derive(Clone, Copy, Default)]
+struct Walk {
+    computed: f64,
+    milliseconds: f64,
+    error: f64,
+}
+
+impl Walk {
+    fn add(&mut self, frame: &TakeFrame, kept: &[f32], whole: &[f32], frames: u32) {
+        self.computed += frame.computed / f64::from(frames);
+        self.milliseconds += frame.milliseconds / f64::from(frames);
+        let light = |pixels: &[f32]| -> Vec<f64> {
+            let (pixels, _) = pixels.as_chunks::<4>();
+            pixels
+                .iter()
+                .flat_map(|p| [p[0], p[1], p[2]].map(f64::from))
+                .collect()
+        };
+        let (kept, whole) = (light(kept), light(whole));
+        let wrong: f64 = kept.iter().zip(&whole).map(|(a, b)| (a - b).abs()).sum();
+        self.error = self
+            .error
+            .max(wrong / whole.iter().sum::<f64>().max(f64::MIN_POSITIVE));
+    }
 }
 
 /// Pixels of a take that differ from the frame computed from nothing.

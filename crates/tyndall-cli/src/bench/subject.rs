@@ -144,6 +144,17 @@ impl Subject {
     pub(super) fn shot(
         &self,
         assets: Option<&Path>,
+        size: [u32; 2],
+        map: u32,
+    ) -> Result<(Shot, String), Failure> {
+        self.shot_with(&[], assets, size, map)
+    }
+
+    /// The same with other values, each as `KEY=VALUE`.
+    pub(super) fn shot_with(
+        &self,
+        values: &[&str],
+        assets: Option<&Path>,
         [width, height]: [u32; 2],
         map: u32,
     ) -> Result<(Shot, String), Failure> {
@@ -153,7 +164,9 @@ impl Subject {
         ];
         let overrides = overrides
             .iter()
-            .map(|text| text.parse())
+            .map(String::as_str)
+            .chain(values.iter().copied())
+            .map(str::parse)
             .collect::<Result<Vec<Override>, _>>()
             .map_err(Failure::input)?;
         let (shot, what) = match self.asset_in(assets) {

@@ -167,8 +167,8 @@ fn reuse_is_timed_and_what_is_left_stale_is_counted() {
         return;
     }
     let json: Vec<Value> = report.tables.iter().map(Table::to_json).collect();
-    let [times, left] = &json[..] else {
-        panic!("expected two tables, found {json:#?}");
+    let [times, left, walks] = &json[..] else {
+        panic!("expected three tables, found {json:#?}");
     };
     let row = &times["rows"][0];
     assert_eq!(row["of"], "builtin:sponge");
@@ -178,4 +178,12 @@ fn reuse_is_timed_and_what_is_left_stale_is_counted() {
     let left = left["rows"].as_array().unwrap();
     assert_eq!(left[0]["mask"], "change");
     assert_eq!(left[0]["stale pixels"], 0, "{left:#?}");
+    let walks = walks["rows"].as_array().unwrap();
+    assert_eq!(walks.len(), 8, "{walks:#?}");
+    for row in walks {
+        let [computed, error, tolerance] =
+            ["computed", "error", "tolerance"].map(|key| row[key].as_f64().unwrap());
+        assert!(computed > 0.0 && computed <= 1.0, "{row:#}");
+        assert!(error < tolerance, "{row:#}");
+    }
 }

@@ -156,6 +156,7 @@ pub(crate) fn reuse(temporal: &Temporal) -> Reuse {
             TemporalMask::Change => ReuseMask::Change,
             TemporalMask::Geometry => ReuseMask::Geometry,
         },
+        reproject: temporal.reproject,
         show: match temporal.show {
             TemporalShow::Light => ReuseShow::Light,
             TemporalShow::Mask => ReuseShow::Mask,

@@ -9,12 +9,14 @@ use super::{
 };
 
 /// Reuse of earlier frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temporal {
     /// Frames that a value is reused for (>= 1); `None`: any number.
     pub reuse: Option<u32>,
     /// How pixels are found that have to be computed again.
     pub mask: TemporalMask,
+    /// Relative error that pixels may be kept with while the camera moves (0 < x <= 1); `None`: none are kept then.
+    pub reproject: Option<f32>,
     /// What the in-scattered light of the picture shows.
     pub show: TemporalShow,
 }
@@ -149,13 +151,15 @@ const TARGET: &str = "a node's name, camera, medium, or a light such as light.0"
 /// Reads `[temporal]`.
 pub(super) fn read_temporal(field: &Field<'_>) -> Result<Temporal, ShotError> {
     let section = field.section()?;
-    section.only(&["reuse", "mask", "show"])?;
+    section.only(&["reuse", "mask", "reproject", "show"])?;
+    let share = |field: Field<'_>| field.real("a number in (0, 1]", |x| x > 0.0 && x <= 1.0);
     Ok(Temporal {
         reuse: match section.get("reuse") {
             Some(field) => read_reuse(&field)?,
             None => Some(DEFAULT_REUSE),
         },
         mask: choice(&section, "mask", &MASKS)?,
+        reproject: section.get("reproject").map(share).transpose()?,
         show: choice(&section, "show", &SHOWS)?,
     })
 }

@@ -163,6 +163,7 @@ sigma_a = [0, 0, 0]
 phase = { kind = \"isotropic\" }
 [temporal]
 reuse = 3
+reproject = 0.02
 [animation]
 fps = 30
 [[animation.move]]
@@ -183,6 +184,7 @@ translate = [[0, 0, 0], [2, 0, 0]]
         Some(Temporal {
             reuse: Some(3),
             mask: TemporalMask::Change,
+            reproject: Some(0.02),
             show: TemporalShow::Light,
         })
     );
@@ -199,34 +201,39 @@ translate = [[0, 0, 0], [2, 0, 0]]
             "shot.toml:12: temporal.mask: expected change or geometry, found \"depth\"",
         ),
         (
+            "reproject = 0.02",
+            "reproject = 0",
+            "shot.toml:13: temporal.reproject: expected a number in (0, 1], found 0",
+        ),
+        (
             "fps = 30",
             "fps = -1",
-            "shot.toml:14: animation.fps: expected a number > 0, found -1",
+            "shot.toml:15: animation.fps: expected a number > 0, found -1",
         ),
         (
             "node = \"dragon\"\n",
             "",
-            "shot.toml:15: animation.move.0.node: is missing: expected a node's name, camera, medium, or a light such as light.0",
+            "shot.toml:16: animation.move.0.node: is missing: expected a node's name, camera, medium, or a light such as light.0",
         ),
         (
             "translate = [[0, 0, 0], [2, 0, 0]]\n",
             "",
-            "shot.toml:15: animation.move.0.translate: is missing: expected translate or rotate_deg, a list of keyframes",
+            "shot.toml:16: animation.move.0.translate: is missing: expected translate or rotate_deg, a list of keyframes",
         ),
         (
             "[2, 0, 0]",
             "[2, 0]",
-            "shot.toml:17: animation.move.0.translate.1: expected three finite numbers, found [2, 0]",
+            "shot.toml:18: animation.move.0.translate.1: expected three finite numbers, found [2, 0]",
         ),
         (
             "fps = 30",
             "fps = 30\nframes = \"9..0\"",
-            "shot.toml:15: animation.frames: expected the first and the last frame as A..B, two whole numbers with A <= B, in quotes, found \"9..0\"",
+            "shot.toml:16: animation.frames: expected the first and the last frame as A..B, two whole numbers with A <= B, in quotes, found \"9..0\"",
         ),
         (
             "\"dragon\"",
             "\"medium\"",
-            "shot.toml:17: animation.move.0.translate: no such key: expected node or density",
+            "shot.toml:18: animation.move.0.translate: no such key: expected node or density",
         ),
     ] {
         assert!(source.contains(from), "{from}");

@@ -27,7 +27,11 @@ fn camera_is_orthographic() -> bool {
 }
 
 fn camera_view_depth(depth: f32) -> f32 {
-    let camera = frame.camera;
+    return camera_view_depth_of(frame.camera, depth);
+}
+
+// Of another camera with the same kind of projection and depth.
+fn camera_view_depth_of(camera: Camera, depth: f32) -> f32 {
     let is_reversed = (camera.flags & CAMERA_REVERSED_DEPTH) != 0u;
     let from_far = saturate(select(1.0 - depth, depth, is_reversed));
     let orthographic = mix(camera.far, camera.near, from_far);
@@ -35,6 +39,15 @@ fn camera_view_depth(depth: f32) -> f32 {
     let infinite = camera.near / max(from_far, camera.near / camera.far);
     let perspective = select(finite, infinite, (camera.flags & CAMERA_INFINITE_DEPTH) != 0u);
     return select(perspective, orthographic, camera_is_orthographic());
+}
+
+// The place in such a camera's picture [pixels] of a point relative to its eye, and the point's view depth [m].
+fn camera_project(camera: Camera, point: vec3f) -> vec3f {
+    let depth = dot(point, camera.forward);
+    let scale = select(depth, 1.0, camera_is_orthographic());
+    let on_plane = vec2f(dot(point, camera.right), dot(point, camera.up)) / scale;
+    let ndc = (on_plane - camera.center) / camera.half_extent;
+    return vec3f((0.5 + vec2f(0.5, -0.5) * ndc) * camera.size, depth);
 }
 
 // The ray through a point of the picture [pixels], (0, 0) at the top left corner, that ends at this depth-buffer value.

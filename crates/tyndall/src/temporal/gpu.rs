@@ -5,17 +5,19 @@ use bytemuck::{Pod, Zeroable};
 use super::{
     Reach, Reuse, ReuseMask, ReuseShow,
     gate::{self, gate},
-    history::Placed,
+    history::{Generations, Placed, Viewpoint},
 };
 use crate::{
     effect::{CountValue, LightInputs},
     error::PrepareError,
-    frame::Light,
+    frame::{Emitter, Light},
     gpu::{
         layout, limits,
-        pass::{Draw, FullScreen, Pass, Vertices, Work, Workgroups},
+        pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
         program::{ComputeProgram, Raster, STENCIL_FORMAT, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
+        shader::MARCH,
+        uniforms::CameraUniform,
     },
     occluder::{
         Occluder,
@@ -33,6 +35,8 @@ const STENCIL: &str = include_str!("stencil.wgsl");
 const SUM: &str = include_str!("sum.wgsl");
 const SHOW: &str = include_str!("show.wgsl");
 const TOUCHED: &str = include_str!("touched.wgsl");
+const REPROJECT: &str = include_str!("reproject.wgsl");
+const RESTORE: &str = include_str!("restore.wgsl");
 
 /// `ReuseParams` of `reuse.wgsl`.
 #[repr(C)]
@@ -48,12 +52,29 @@ pub(crate) struct ParamsUniform {
     pub(crate) reach: u32,
     pub(crate) has_witness: u32,
     pub(crate) levels: u32,
+    pub(crate) kin: u32,
+    pad: [u32; 3],
     pub(crate) dispatches: [[u32; 4]; MAX_DISPATCHES],
 }
 
+/// `Reproject` of `reproject.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct ReprojectUniform {
+    camera: CameraUniform,
+    eye: [f32; 3],
+    tolerance: f32,
+    rounding: f32,
+    pad: [f32; 3],
+}
+
 const MAX_DISPATCHES: usize = 16;
-/// `ReuseState`: five words.
-const STATE_BYTES: u64 = 20;
+/// Where the sizes of what takes over another camera's picture stand, behind those of the others: a dispatch's and a
+/// draw's [bytes].
+const REPROJECT_GROUPS: u64 = 12 * MAX_DISPATCHES as u64;
+const RESTORE_VERTICES: u64 = REPROJECT_GROUPS + 12;
+/// `ReuseState`: seven words.
+const STATE_BYTES: u64 = 28;
 /// Where the number of stale pixels stands in it.
 const STALE: u64 = 8;
 /// Texels of a finest block's side, pixels of a tile's, invocations of a workgroup's.
@@ -66,8 +87,10 @@ pub(crate) struct Programs {
     decide: ComputeProgram,
     change_finest: ComputeProgram,
     change_coarser: ComputeProgram,
+    reproject: ComputeProgram,
     tiles: ComputeProgram,
     stencil: ScreenProgram,
+    restore: ScreenProgram,
     sum: ScreenProgram,
     show: ScreenProgram,
     touched: VolumePrograms,
@@ -113,6 +136,16 @@ impl Programs {
             written(4),
             written(5),
             layout::texels(6),
+            read(7),
+        ];
+        let reproject = [
+            params,
+            layout::uniform::<ReprojectUniform>(1),
+            read(2),
+            layout::texels(3),
+            read(4),
+            read(5),
+            written(6),
         ];
         Self {
             decide: compute(
@@ -124,8 +157,21 @@ impl Programs {
             .for_all_lights(),
             change_finest: change("change_finest"),
             change_coarser: change("change_coarser"),
+            reproject: compute(
+                "reuse reproject",
+                &[MARCH, REUSE, REPROJECT],
+                "reproject_tile",
+                &reproject,
+            ),
             tiles: compute("reuse tiles", &[REUSE, BLOCKS, TILES], "tiles", &tiles),
             stencil: screen("reuse stencil", &[REUSE, STENCIL], "stencil", &aged).for_all_lights(),
+            restore: screen(
+                "reuse restore",
+                &[REUSE, RESTORE],
+                "restore",
+                &[params, read(1)],
+            )
+            .for_all_lights(),
             sum: screen("reuse sum", &[SUM], "sum", &[layout::texels(0)]).for_all_lights(),
             show: screen("reuse show", &[REUSE, STENCIL, SHOW], "show", &show).for_all_lights(),
             touched: VolumePrograms::new(
@@ -149,6 +195,13 @@ pub(crate) fn check(
     light: &Light,
     inputs: &LightInputs<'_>,
 ) -> Result<(), PrepareError> {
+    if let Some(tolerance) = reuse.reproject.filter(|t| !(t.is_finite() && *t > 0.0)) {
+        return Err(PrepareError::OutOfRange {
+            field: "reuse.reproject".to_owned(),
+            expected: "a finite number > 0",
+            found: tolerance.to_string(),
+        });
+    }
     if reuse.mask == ReuseMask::Geometry && inputs.occluders.is_none() {
         return Err(PrepareError::Missing {
             field: format!("inputs.lights[{index}].occluders"),
@@ -164,8 +217,9 @@ pub(crate) fn check(
         let size = map.texture().size();
         u64::from(size.width) * u64::from(size.height) * u64::from(faces(light))
     });
-    // The witness takes two words a pixel, the map one a texel.
-    let needed = (4 * texels).max(8 * u64::from(width) * u64::from(height));
+    // The map takes a word a texel, the witness two a pixel, what is found in another camera's picture four.
+    let pixel = if reuse.reproject.is_some() { 16 } else { 8 };
+    let needed = (4 * texels).max(pixel * u64::from(width) * u64::from(height));
     let of = format!("temporal reuse (lights[{index}])");
     limits::check_storage(limits, &of, &[("memory", needed)])
 }
@@ -173,11 +227,22 @@ pub(crate) fn check(
 /// What a frame knows of a light's reuse before the light's passes are made.
 pub(crate) struct Frame<'a> {
     pub(crate) reuse: Reuse,
-    /// See [`History::generation`](super::History::generation).
-    pub(crate) generation: u32,
+    pub(crate) generations: Generations,
     pub(crate) reach: Reach,
+    /// Where the frame recorded last was seen from.
+    pub(crate) before: Option<Viewpoint>,
     /// What moved, for the geometry's mask.
     pub(crate) moved: &'a [Placed],
+}
+
+impl Frame<'_> {
+    /// What may be wrong with a pixel of another camera's picture, where any is kept at all: pixels have to be computed
+    /// each on its own, and the light's shadows be asked at any point.
+    fn reprojection(&self, light: &Light) -> Option<(Viewpoint, f32)> {
+        let is_fit = matches!(self.reach, Reach::Pixels(_))
+            && !matches!(light.emitter, Emitter::Rect { .. });
+        self.before.zip(self.reuse.reproject).filter(|_| is_fit)
+    }
 }
 
 /// The stencil through which a light's last pass draws.
@@ -218,6 +283,7 @@ pub(super) struct Buffers {
     depth_seen: wgpu::Buffer,
     age: wgpu::Buffer,
     witness_seen: wgpu::Buffer,
+    found: wgpu::Buffer,
 }
 
 /// Numbers of blocks of each level's side, finest first; none without a map.
@@ -246,6 +312,11 @@ impl Buffers {
         let texels = u64::from(map[0]) * u64::from(map[1]) * u64::from(faces);
         let pixels = u64::from(scope.size[0]) * u64::from(scope.size[1]);
         let witnessed = if scope.witness.is_some() { pixels } else { 1 };
+        let found = if frame.reuse.reproject.is_some() {
+            pixels
+        } else {
+            1
+        };
         let state = {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
             let key = (Some(scope.index), "reuse state");
@@ -254,12 +325,14 @@ impl Buffers {
         Self {
             params: scope.uniform("reuse params", &params),
             state,
-            dispatches: scope.indirect("reuse dispatches", MAX_DISPATCHES as u64),
+            // One more, and a draw's four words.
+            dispatches: scope.indirect("reuse dispatches", MAX_DISPATCHES as u64 + 3),
             blocks: scope.storage("reuse blocks", 8 * (blocks * u64::from(faces)).max(1)),
             map_seen: scope.storage("reuse shadow map", 4 * texels.max(1)),
             depth_seen: scope.storage("reuse depth", 4 * pixels),
             age: scope.storage("reuse age", 4 * pixels),
             witness_seen: scope.storage("reuse witness", 8 * witnessed),
+            found: scope.storage("reuse found", 16 * found),
         }
     }
 }
@@ -289,7 +362,7 @@ fn params(
         pixels: scope.size,
         map,
         faces,
-        generation: frame.generation,
+        generation: frame.generations.whole,
         frames: frame.reuse.frames.unwrap_or(u32::MAX),
         mask: match frame.reuse.mask {
             ReuseMask::Change => 0,
@@ -299,6 +372,11 @@ fn params(
         reach,
         has_witness: u32::from(scope.witness.is_some()),
         levels: levels.len() as u32,
+        kin: match frame.reprojection(scope.light) {
+            Some(_) => frame.generations.kin,
+            None => 0,
+        },
+        pad: [0; 3],
         dispatches,
     }
 }
@@ -321,12 +399,15 @@ pub(crate) fn wrap(
         passes.extend(touch(frame.moved, programs, scope));
     }
     let buffers = Buffers::new(frame, scope);
-    passes.push(find(&buffers, programs, scope));
+    passes.push(find(frame, &buffers, programs, scope));
     if !own.is_empty() {
         passes.extend(gate(own, &buffers, &programs.gate, scope));
     }
     if let Some(stencil) = scope.stencil.clone() {
         passes.push(mark(&buffers, stencil, programs, scope));
+    }
+    if frame.reprojection(scope.light).is_some() {
+        passes.push(restore(&buffers, programs, scope));
     }
     passes.extend(last);
     let (buffer, offset) = (buffers.state, STALE);
@@ -360,7 +441,12 @@ const NAMES: Names = Names {
 };
 
 /// The dispatches that leave the pixels' ages.
-fn find(buffers: &Buffers, programs: &Programs, scope: &mut LightScope<'_>) -> Pass {
+fn find(
+    frame: &Frame<'_>,
+    buffers: &Buffers,
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+) -> Pass {
     let levels: Vec<[u32; 4]> = (0..MAX_DISPATCHES as u32).map(|k| [k, 0, 0, 0]).collect();
     let levels = scope.blocks("reuse levels", levels);
     let [params, state, blocks] =
@@ -377,6 +463,9 @@ fn find(buffers: &Buffers, programs: &Programs, scope: &mut LightScope<'_>) -> P
         buffers.dispatches.as_entire_binding(),
     ];
     let mut dispatches = vec![scope.dispatch(&programs.decide, &decide, [1; 3])];
+    if let Some(before) = frame.reprojection(scope.light) {
+        dispatches.push(reproject(before, buffers, programs, scope));
+    }
     for level in 0..count {
         let resources = [
             params.clone(),
@@ -401,9 +490,50 @@ fn find(buffers: &Buffers, programs: &Programs, scope: &mut LightScope<'_>) -> P
         buffers.age.as_entire_binding(),
         buffers.witness_seen.as_entire_binding(),
         wgpu::BindingResource::TextureView(&witness),
+        buffers.found.as_entire_binding(),
     ];
     dispatches.push(scope.dispatch(&programs.tiles, &tiles, indirect(0)));
     Pass::compute(scope.pass_name("find stale pixels"), dispatches)
+}
+
+/// What is found in the picture of the frame before, which another camera took.
+fn reproject(
+    (before, tolerance): (Viewpoint, f32),
+    buffers: &Buffers,
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+) -> Dispatch {
+    let uniform = ReprojectUniform {
+        camera: before.camera,
+        eye: (before.eye - scope.rays.eye).as_vec3().to_array(),
+        tolerance,
+        rounding: match scope.shared.output {
+            wgpu::TextureFormat::Rgba16Float => 0.5_f32.powi(11),
+            _ => 0.5_f32.powi(24),
+        },
+        pad: [0.0; 3],
+    };
+    let uniform = scope.uniform("reuse reproject", &uniform);
+    let kept = kept(scope);
+    let resources = [
+        buffers.params.as_entire_binding(),
+        uniform.as_entire_binding(),
+        buffers.state.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&kept),
+        buffers.depth_seen.as_entire_binding(),
+        buffers.age.as_entire_binding(),
+        buffers.found.as_entire_binding(),
+    ];
+    let groups = Workgroups::Indirect(buffers.dispatches.clone(), REPROJECT_GROUPS);
+    scope.dispatch(&programs.reproject, &resources, groups)
+}
+
+/// Draws what was found there.
+fn restore(buffers: &Buffers, programs: &Programs, scope: &LightScope<'_>) -> Pass {
+    let resources = [&buffers.params, &buffers.found].map(|b| b.as_entire_binding());
+    let draw = scope.draw(&programs.restore, &resources, scope.target.clone());
+    let gate = Some((buffers.dispatches.clone(), RESTORE_VERTICES));
+    of_draw(scope.pass_name("reproject"), FullScreen { gate, ..draw })
 }
 
 /// The stencil of the pixels that are stale.

@@ -2,10 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::ReuseMask;
+use glam::DVec3;
+
+use super::{Reuse, ReuseMask};
 use crate::{
     effect::LightInputs,
-    gpu::uniforms::{FrameUniform, LightUniform, LightVariant},
+    frame::{Camera, Frame, Light, Medium},
+    gpu::uniforms::{CameraUniform, LightVariant},
     occluder::{Occluder, OccluderMesh},
     techniques::Technique,
 };
@@ -15,12 +18,33 @@ use crate::{
 pub(crate) struct History {
     lights: HashMap<usize, LightHistory>,
     generations: u32,
+    /// Of the frame recorded last.
+    recorded: Option<Viewpoint>,
+    /// Of the frame prepared last.
+    prepared: Option<Viewpoint>,
+}
+
+/// Where a frame is seen from.
+#[derive(Clone, Copy)]
+pub(crate) struct Viewpoint {
+    pub(crate) camera: CameraUniform,
+    /// World-space eye [m].
+    pub(crate) eye: DVec3,
+}
+
+/// Numbers of a light's frames that are alike; never 0.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Generations {
+    /// Another one whenever the signature is.
+    pub(crate) whole: u32,
+    /// Another one whenever more of it than the camera's place is.
+    pub(crate) kin: u32,
 }
 
 #[derive(Default)]
 struct LightHistory {
     signature: Option<Signature>,
-    generation: u32,
+    generations: Generations,
     /// Occluders of the frame recorded last.
     recorded: Vec<Placed>,
     /// Occluders of the frame prepared last.
@@ -57,11 +81,19 @@ impl Placed {
 /// All that a light's picture depends on besides depth buffer and shadow map.
 #[derive(Clone, PartialEq)]
 pub(crate) struct Signature {
-    frame: Vec<u8>,
-    light: Vec<u8>,
+    camera: Camera,
+    kin: Kin,
+}
+
+/// The same but for the camera.
+#[derive(Clone, PartialEq)]
+struct Kin {
+    light: Light,
+    medium: Medium,
     variant: LightVariant,
     technique: Technique,
     mask: ReuseMask,
+    reproject: Option<f32>,
     map: Option<wgpu::Extent3d>,
     texture: Option<wgpu::TextureView>,
     /// The revision of the maps of a light through glass.
@@ -70,52 +102,77 @@ pub(crate) struct Signature {
 
 impl Signature {
     pub(crate) fn new(
-        frame: &FrameUniform,
-        light: &LightUniform,
+        frame: &Frame,
+        light: &Light,
         variant: LightVariant,
-        technique: &Technique,
-        mask: ReuseMask,
+        reuse: Reuse,
         inputs: &LightInputs<'_>,
     ) -> Self {
         Self {
-            frame: bytemuck::bytes_of(frame).to_vec(),
-            light: bytemuck::bytes_of(light).to_vec(),
-            variant,
-            technique: technique.clone(),
-            mask,
-            map: inputs.shadow_map.map(|map| map.texture().size()),
-            texture: inputs.texture.cloned(),
-            glass: inputs.glass.map(|_| inputs.shadow_revision),
+            camera: frame.camera,
+            kin: Kin {
+                light: *light,
+                medium: frame.medium.clone(),
+                variant,
+                technique: frame.technique.clone(),
+                mask: reuse.mask,
+                reproject: reuse.reproject,
+                map: inputs.shadow_map.map(|map| map.texture().size()),
+                texture: inputs.texture.cloned(),
+                glass: inputs.glass.map(|_| inputs.shadow_revision),
+            },
         }
     }
 
     /// Whether a picture of the same signature may be kept: glass without a revision may change at any time.
     fn is_certain(&self) -> bool {
-        self.glass != Some(None)
+        self.kin.glass != Some(None)
+    }
+
+    /// Whether the other differs in the camera's place and lens at most.
+    fn is_kin(&self, other: &Self) -> bool {
+        let kind = |camera: &Camera| {
+            (
+                std::mem::discriminant(&camera.projection),
+                camera.depth_range,
+            )
+        };
+        self.kin == other.kin && kind(&self.camera) == kind(&other.camera)
     }
 }
 
 impl History {
     /// Begins a frame; `before_ran` says whether the one prepared before was recorded.
-    pub(crate) fn begin(&mut self, lights: usize, before_ran: bool) {
+    pub(crate) fn begin(&mut self, lights: usize, before_ran: bool, seen_from: Viewpoint) {
         self.lights.retain(|index, _| *index < lights);
         if before_ran {
+            self.recorded = self.prepared;
             for light in self.lights.values_mut() {
                 light.recorded = std::mem::take(&mut light.prepared);
             }
         }
+        self.prepared = Some(seen_from);
     }
 
-    /// A number that differs from that of every frame with another signature; never 0.
-    pub(crate) fn generation(&mut self, light: usize, signature: Signature) -> u32 {
+    /// Where the frame recorded last was seen from; this one, where it is the first.
+    pub(crate) fn before(&self) -> Option<Viewpoint> {
+        self.recorded.or(self.prepared)
+    }
+
+    /// Numbers that differ from those of every frame with another signature.
+    pub(crate) fn generations(&mut self, light: usize, signature: Signature) -> Generations {
         let history = self.lights.entry(light).or_default();
-        let is_same = history.signature.as_ref() == Some(&signature);
-        if !is_same || !signature.is_certain() {
+        let known = history.signature.as_ref();
+        let known = known.filter(|_| signature.is_certain());
+        if known != Some(&signature) {
             self.generations = self.generations.wrapping_add(1).max(1);
-            history.generation = self.generations;
+            history.generations.whole = self.generations;
+            if !known.is_some_and(|known| known.is_kin(&signature)) {
+                history.generations.kin = self.generations;
+            }
             history.signature = Some(signature);
         }
-        history.generation
+        history.generations
     }
 
     /// The occluders that moved, came or went since the frame recorded last, where they were and where they are.

@@ -13,8 +13,8 @@ fn stencil(@builtin(position) position: vec4f) {
 // Frames since the pixel was computed.
 fn reuse_age(pixel: vec2u) -> u32 {
     let is_whole = reuse.reach == REUSE_PICTURE && stencil_state.stale > 0u;
-    if stencil_state.mode != REUSE_MASKED || is_whole {
+    if stencil_state.mode < REUSE_MASKED || is_whole {
         return 0u;
     }
-    return stencil_age[pixel.y * reuse.pixels.x + pixel.x];
+    return stencil_age[pixel.y * reuse.pixels.x + pixel.x] & REUSE_AGE;
 }

@@ -1,17 +1,20 @@
 // Which pixels are stale. A tile of 8 x 8 pixels is asked as one: 16 slabs of the beam that its rays fill are held against the
 // blocks of the shadow map that changed, then each of the eight parts of those that meet a change. Depth is compared pixel
-// by pixel.
+// by pixel; after another camera's frame those pixels are stale instead that were not found in its picture.
 
 @group(2) @binding(1) var<storage, read_write> tiles_state: ReuseState;
 @group(2) @binding(2) var<storage, read> tiles_blocks: array<vec2f>;
 @group(2) @binding(3) var<storage, read_write> tiles_depth: array<f32>;
-@group(2) @binding(4) var<storage, read_write> tiles_age: array<u32>; // frames since a pixel was computed
+@group(2) @binding(4) var<storage, read_write> tiles_age: array<u32>; // see REUSE_AGE
 @group(2) @binding(5) var<storage, read_write> tiles_seen: array<vec2u>; // the witness of the frame before
 @group(2) @binding(6) var tiles_witness: texture_2d<f32>;
+@group(2) @binding(7) var<storage, read> tiles_found: array<vec4u>; // see reproject.wgsl
 
 const TILES_SIDE: u32 = 8u;
 const TILES_SLABS: u32 = 16u;
 const TILES_PARTS: u32 = 8u;
+// While the camera rests, what is not exact is computed again within so many frames.
+const TILES_TURNS: u32 = 8u;
 // Blocks a side that a slab is held against at most, less one.
 const TILES_SPAN: u32 = 3u;
 // Rounding of places on the map [texels] and of depths, absolute and relative.
@@ -33,10 +36,12 @@ fn tiles(
     let is_inside = all(pixel < reuse.pixels);
     let place = pixel.y * reuse.pixels.x + pixel.x;
     var is_stale = false;
+    var memory = 0u;
     if is_inside {
+        memory = tiles_memory(tile.xy, place);
         let depth = textureLoad(frame_depth, pixel, 0);
         atomicMax(&tiles_farthest, bitcast<u32>(max(camera_view_depth(depth), 0.0)));
-        is_stale = tiles_pixel_changed(pixel, place, depth);
+        is_stale = tiles_pixel_changed(pixel, place, depth) || memory == REUSE_LOST;
     }
     workgroupBarrier();
     let corner = vec2f(TILES_SIDE * tile.xy);
@@ -58,15 +63,16 @@ fn tiles(
         }
     }
     workgroupBarrier();
-    let is_computed = tiles_state.mode != REUSE_MASKED || is_stale || atomicLoad(&tiles_touched) != 0u;
+    let is_computed = tiles_state.mode < REUSE_MASKED || is_stale || atomicLoad(&tiles_touched) != 0u;
     if is_inside {
-        tiles_age[place] = select(min(tiles_age[place] + 1u, 0xffffu), 0u, is_computed);
+        let age = min((memory & REUSE_AGE) + 1u, REUSE_AGE);
+        tiles_age[place] = select((memory & REUSE_ERROR) | age, 0u, is_computed);
         if is_computed {
             atomicAdd(&tiles_stale, 1u);
         }
     }
     workgroupBarrier();
-    if lane == 0u && tiles_state.mode == REUSE_MASKED {
+    if lane == 0u && tiles_state.mode >= REUSE_MASKED {
         let stale = atomicLoad(&tiles_stale);
         if stale > 0u {
             atomicAdd(&tiles_state.stale, stale);
@@ -83,20 +89,30 @@ fn tiles_bit(bits: u32, index: u32) -> u32 {
     return firstTrailingBit(left);
 }
 
-// Whether what the pixel's last pass reads of this very pixel has changed; remembers it.
+// What is remembered of what the pixel sees.
+fn tiles_memory(tile: vec2u, place: u32) -> u32 {
+    if tiles_state.mode == REUSE_REPROJECT {
+        return tiles_found[place].w;
+    }
+    let memory = tiles_age[place];
+    let is_its_turn = (tile.x + 3u * tile.y + tiles_state.turn) % TILES_TURNS == 0u;
+    return select(memory, REUSE_LOST, is_its_turn && memory > REUSE_AGE);
+}
+
+// Whether what the pixel's last pass reads of this very pixel has changed, for the same camera; remembers it.
 fn tiles_pixel_changed(pixel: vec2u, place: u32, depth: f32) -> bool {
+    var is_changed = bitcast<u32>(tiles_depth[place]) != bitcast<u32>(depth);
+    tiles_depth[place] = depth;
     if reuse.mask == REUSE_GEOMETRY {
         return textureLoad(tiles_witness, pixel, 0).x > 0.0;
     }
-    var is_changed = bitcast<u32>(tiles_depth[place]) != bitcast<u32>(depth);
-    tiles_depth[place] = depth;
     if reuse.has_witness == 1u {
         let seen = textureLoad(tiles_witness, pixel, 0);
         let witness = vec2u(pack2x16float(seen.xy), pack2x16float(seen.zw));
         is_changed = is_changed || any(tiles_seen[place] != witness);
         tiles_seen[place] = witness;
     }
-    return is_changed;
+    return is_changed && tiles_state.mode != REUSE_REPROJECT;
 }
 
 // Eight corners of a slab of the beam: four rays round the tile, at two view depths.

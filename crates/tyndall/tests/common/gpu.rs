@@ -36,6 +36,11 @@ pub(crate) struct Uploaded {
 
 impl Uploaded {
     pub(crate) fn new(gpu: &TestDevice, stage: &Stage) -> Self {
+        Self::sized(SIZE, gpu, stage)
+    }
+
+    /// Of a stage of this size [pixels].
+    pub(crate) fn sized(size: [u32; 2], gpu: &TestDevice, stage: &Stage) -> Self {
         let light = |(light, pictures): (&tyndall::frame::Light, &StageLight)| {
             let faces = match light.shadow {
                 Some(ShadowProjection::Cube { .. }) => 6,
@@ -51,7 +56,7 @@ impl Uploaded {
             ]
         };
         Self {
-            depth: depth_texture(gpu, SIZE, 1, &stage.depth).create_view(&Default::default()),
+            depth: depth_texture(gpu, size, 1, &stage.depth).create_view(&Default::default()),
             lights: stage
                 .frame
                 .lights

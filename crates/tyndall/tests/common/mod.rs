@@ -18,6 +18,8 @@ use tyndall_testkit::{metrics::compare, picture::Picture};
 
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
+#[cfg(feature = "gpu")]
+pub(crate) mod run;
 
 /// Width and height of the pictures [pixels].
 pub(crate) const SIZE: [u32; 2] = [48, 36];

@@ -122,6 +122,7 @@ fn points(setup: &Setup, index: usize, gpu: &Gpu, needs: Needs) -> Option<(Buffe
 pub(super) fn light_inputs<'a>(
     lights: &'a [LightTargets],
     occluders: Option<&'a [Occluder<'a>]>,
+    revision: u64,
 ) -> Vec<LightInputs<'a>> {
     lights
         .iter()
@@ -134,7 +135,7 @@ pub(super) fn light_inputs<'a>(
                 points,
                 map_side: *map_side,
             }),
-            ..LightInputs::default()
+            shadow_revision: Some(revision),
         })
         .collect()
 }

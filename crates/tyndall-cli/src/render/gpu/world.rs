@@ -2,7 +2,10 @@
 
 use std::cell::OnceCell;
 
-use tyndall::{LightInputs, Occluder, SurfaceShadows, gpu::PassTimer, temporal::Reuse};
+use glam::Affine3A;
+use tyndall::{
+    LightInputs, Occluder, SurfaceShadows, frame::Light, gpu::PassTimer, temporal::Reuse,
+};
 use tyndall_scene::gpu::{
     GBufferTargets, SceneOccluders, SceneRenderer, SurfaceLights,
     readback::{self, ReadbackError},
@@ -22,6 +25,26 @@ pub(crate) struct World {
     g_buffer: GBufferTargets,
     lights: Vec<LightTargets>,
     occluders: OnceCell<SceneOccluders>,
+    /// What the lights' maps show, and a number that changes with it.
+    shown: Shown,
+    revision: u64,
+}
+
+/// All that the lights' maps depend on.
+#[derive(PartialEq)]
+struct Shown {
+    nodes: Vec<Affine3A>,
+    lights: Vec<Light>,
+}
+
+impl Shown {
+    fn new(setup: &Setup) -> Self {
+        let nodes = setup.scene.nodes.iter();
+        Self {
+            nodes: nodes.map(|node| node.parent_from_local).collect(),
+            lights: setup.frame.lights.clone(),
+        }
+    }
 }
 
 impl World {
@@ -43,6 +66,8 @@ impl World {
             renderer,
             lights,
             occluders: OnceCell::new(),
+            shown: Shown::new(setup),
+            revision: 0,
         })
     }
 
@@ -50,6 +75,11 @@ impl World {
     /// camera and lights, and in the lights' pictures alone.
     pub(crate) fn place(&mut self, setup: &Setup, gpu: &Gpu, needs: Needs) -> Result<(), Failure> {
         self.renderer.place(&gpu.queue, &setup.scene);
+        let shown = Shown::new(setup);
+        if self.shown != shown {
+            self.shown = shown;
+            self.revision += 1;
+        }
         for (index, targets) in self.lights.iter_mut().enumerate() {
             // A light that turns towards the scene or away from it gets or loses its map.
             if !targets.suits(&setup.frame.lights[index], needs) {
@@ -133,7 +163,7 @@ impl World {
         &'a self,
         occluders: Option<&'a [Occluder<'a>]>,
     ) -> Vec<LightInputs<'a>> {
-        light_inputs(&self.lights, occluders)
+        light_inputs(&self.lights, occluders, self.revision)
     }
 
     /// What blocks light, where it is in this setup; nothing where nobody asks. Uploaded when first asked for.
