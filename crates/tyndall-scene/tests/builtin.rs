@@ -25,6 +25,7 @@ fn sizes() {
         ("hairball", 249_612, 2, 0),
         ("sponge", 36_098, 2, 0),
         ("crowd", 48_194, 5, 0),
+        ("city", 19_320, 3, 0),
         ("empty", 0, 0, 0),
     ];
     assert_eq!(BUILTINS.len(), cases.len());

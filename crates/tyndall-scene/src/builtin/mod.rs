@@ -4,6 +4,7 @@
 
 mod builder;
 mod church;
+mod city;
 mod forest;
 mod glass;
 mod hairball;
@@ -74,6 +75,11 @@ pub const BUILTINS: &[Builtin] = &[
         name: "crowd",
         about: "a sponge and two dozen rings: much that can be moved",
         make: moving::crowd,
+    },
+    Builtin {
+        name: "city",
+        about: "streets between towers: long shafts, and roofs for a light to hang over",
+        make: city::make,
     },
     Builtin {
         name: "empty",
