@@ -28,6 +28,7 @@ use crate::{
 
 const RECTIFY: &str = include_str!("rectify.wgsl");
 pub(super) const PARAMS: &str = include_str!("params.wgsl");
+pub(super) const SAMPLES: &str = include_str!("samples.wgsl");
 const GATHER: &str = include_str!("gather.wgsl");
 pub(super) const FILTER: &str = include_str!("filter.wgsl");
 const RESOLVE: &str = include_str!("resolve.wgsl");
@@ -93,17 +94,8 @@ impl Programs {
         let own = [batch, read(1), read(2), read(3), layout::storage(4, false)];
         let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, RECTIFY];
         let rectify = compute("rectify", &modules, "rectify", &own);
-        let own = [
-            batch,
-            read(1),
-            read(2),
-            read(3),
-            read(4),
-            read(5),
-            layout::uniform::<ParamsUniform>(6),
-            layout::storage(7, false),
-        ];
-        let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, GATHER];
+        let own = batch_entries(&[layout::storage(7, false)]);
+        let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, SAMPLES, GATHER];
         let gather = compute("gather", &modules, "ivsv_gather", &own);
         let own = [batch, layout::uniform::<ParamsUniform>(1), read(2)];
         let modules = [IMPERFECT, PARAMS, FILTER, RESOLVE];
@@ -122,10 +114,39 @@ impl Programs {
 /// What all batches of a light share.
 pub(super) struct Buffers {
     pub(super) light: imperfect::Buffers,
-    pub(super) grids: wgpu::Buffer,
-    pub(super) voxels: wgpu::Buffer,
+    grids: wgpu::Buffer,
+    voxels: wgpu::Buffer,
     pub(super) params: wgpu::Buffer,
     sums: wgpu::Buffer,
+}
+
+/// The bindings of a pass over the samples of a batch: those of `samples.wgsl`, and the pass's own.
+pub(super) fn batch_entries(own: &[wgpu::BindGroupLayoutEntry]) -> Vec<wgpu::BindGroupLayoutEntry> {
+    let batch = layout::uniform::<BatchUniform>(0);
+    let params = layout::uniform::<ParamsUniform>(6);
+    let read = (1..6).map(|binding| layout::storage(binding, true));
+    let shared = std::iter::once(batch).chain(read).chain([params]);
+    shared.chain(own.iter().copied()).collect()
+}
+
+impl Buffers {
+    /// The resources of a pass over the samples of a batch, as in [`batch_entries`].
+    pub(super) fn of_batch<'a, const N: usize>(
+        &'a self,
+        index: u32,
+        own: [wgpu::BindingResource<'a>; N],
+    ) -> Vec<wgpu::BindingResource<'a>> {
+        let shared = [
+            self.light.batches.binding(index),
+            self.light.samples.as_entire_binding(),
+            self.grids.as_entire_binding(),
+            self.light.maps.as_entire_binding(),
+            self.voxels.as_entire_binding(),
+            self.light.colors.as_entire_binding(),
+            self.params.as_entire_binding(),
+        ];
+        shared.into_iter().chain(own).collect()
+    }
 }
 
 /// The passes of one light: five a batch, and two; one more of each where shadows on surfaces are asked for.
@@ -223,16 +244,7 @@ fn gather(
     index: u32,
     picture: &ParamsUniform,
 ) -> Pass {
-    let resources = [
-        buffers.light.batches.binding(index),
-        buffers.light.samples.as_entire_binding(),
-        buffers.grids.as_entire_binding(),
-        buffers.light.maps.as_entire_binding(),
-        buffers.voxels.as_entire_binding(),
-        buffers.light.colors.as_entire_binding(),
-        buffers.params.as_entire_binding(),
-        buffers.sums.as_entire_binding(),
-    ];
+    let resources = buffers.of_batch(index, [buffers.sums.as_entire_binding()]);
     let [x, y] = picture.size.map(|n| n.div_ceil(TILE));
     scope.compute(&programs.gather, "gather", &resources, [x, y, 1])
 }

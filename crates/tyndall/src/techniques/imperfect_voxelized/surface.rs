@@ -1,6 +1,6 @@
 //! Shadows on surfaces, from the same voxels: what each pixel's surface gets of each sample, batch by batch.
 
-use super::gpu::{Buffers, FILTER, PARAMS, ParamsUniform, TILE};
+use super::gpu::{Buffers, FILTER, PARAMS, ParamsUniform, SAMPLES, TILE, batch_entries};
 use crate::{
     effect::SurfaceShadows,
     epipolar::gpu::EPIPOLAR,
@@ -31,19 +31,10 @@ impl Programs {
         let batch = layout::uniform::<BatchUniform>(0);
         let read = |binding| layout::storage(binding, true);
         let write = |binding| layout::storage(binding, false);
-        let own = [
-            batch,
-            read(1),
-            read(2),
-            read(3),
-            read(4),
-            read(5),
-            layout::uniform::<ParamsUniform>(6),
-            layout::texels(7),
-            write(8),
-            write(9),
+        let own = batch_entries(&[layout::texels(7), write(8), write(9)]);
+        let modules = [
+            EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, SAMPLES, SURFACE,
         ];
-        let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, SURFACE];
         let add = ComputeProgram::new(
             device,
             shared,
@@ -101,18 +92,12 @@ impl Sums {
         index: u32,
         picture: &ParamsUniform,
     ) -> Pass {
-        let resources = [
-            buffers.light.batches.binding(index),
-            buffers.light.samples.as_entire_binding(),
-            buffers.grids.as_entire_binding(),
-            buffers.light.maps.as_entire_binding(),
-            buffers.voxels.as_entire_binding(),
-            buffers.light.colors.as_entire_binding(),
-            buffers.params.as_entire_binding(),
+        let own = [
             wgpu::BindingResource::TextureView(&self.normals),
             self.lit.as_entire_binding(),
             self.all.as_entire_binding(),
         ];
+        let resources = buffers.of_batch(index, own);
         let [x, y] = picture.size.map(|n| n.div_ceil(TILE));
         scope.compute(&programs.add, "light surfaces", &resources, [x, y, 1])
     }

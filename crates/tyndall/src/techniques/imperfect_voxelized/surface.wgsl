@@ -1,13 +1,6 @@
 // How much of the light of all samples of a batch reaches the surface that each pixel sees: visibility at the end of its
 // ray, between two slices and two columns of each sample's voxels (Wyman and Dai 2013, section 3.3).
 
-@group(2) @binding(0) var<uniform> imperfect_batch: ImperfectBatch;
-@group(2) @binding(1) var<storage, read> imperfect_samples: array<ImperfectSample>;
-@group(2) @binding(2) var<storage, read> grids: array<Epipolar>;
-@group(2) @binding(3) var<storage, read> imperfect_maps: array<u32>;
-@group(2) @binding(4) var<storage, read> voxels: array<u32>;
-@group(2) @binding(5) var<storage, read> imperfect_colors: array<vec4f>;
-@group(2) @binding(6) var<uniform> ivsv: IvsvParams;
 // World space, unit; zero where it is not known.
 @group(2) @binding(7) var ivsv_normals: texture_2d<f32>;
 // Irradiance that arrives, and that which would if nothing blocked it.
