@@ -251,14 +251,15 @@ fn bounds_hold_every_shadow() {
         }
     }
     // Most rays without shadows are known to be so, and the bounds of the others are not just the whole ray. What is spare
-    // is mostly between the points that are asked, and rays that start in a shadow or end in one beyond their end.
+    // is mostly between the points that are asked, and rays that start in a shadow or end in one beyond their end; and what a
+    // tile's other rays see, a twelfth of such a small picture away. Measured: 0.27.
     let spare = spare / f64::from(shadows);
     println!("{shadows} rays with shadows, {rays_without} without, spare {spare}");
     assert!(
         shadows > 5_000 && rays_without > 5_000,
         "{shadows} {rays_without}"
     );
-    assert!(spare < 0.2, "{spare}");
+    assert!(spare < 0.3, "{spare}");
 }
 
 fn of_the_map() -> Technique {

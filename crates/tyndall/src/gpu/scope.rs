@@ -66,9 +66,9 @@ pub(crate) struct LightScope<'a> {
     pub(crate) target: wgpu::TextureView,
     /// Which pixels the last pass writes, where 1; `None`: all.
     pub(crate) stencil: Option<wgpu::TextureView>,
-    /// A picture of the view's size that the last pass reads at its own pixel, and that may change where neither depth nor
-    /// shadow map do; half floats at most.
-    pub(crate) witness: Option<wgpu::TextureView>,
+    /// What the last pass reads at its own tile (see `occluder/tile.wgsl`), and may change where neither depth nor shadow map
+    /// do.
+    pub(crate) witness: Option<wgpu::Buffer>,
     /// Whether shadows on surfaces are asked for, and what is known of the surfaces.
     pub(crate) surface_shadows: Option<&'a SurfaceShadows>,
     /// How much of the light reaches each pixel's surface, where the technique says so.

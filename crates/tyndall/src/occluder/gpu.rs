@@ -1,4 +1,4 @@
-//! Draws of shadow volumes' boundaries, for any pass that wants them.
+//! What is known on the screen of where shadow volumes begin and end, for any pass that wants it.
 
 use std::ops::Range;
 
@@ -10,16 +10,19 @@ use crate::{
     error::PrepareError,
     gpu::{
         layout, limits,
-        pass::{Dispatch, Draw, Pass, Vertices},
-        program::{ComputeProgram, Raster, ScreenProgram},
+        pass::{Dispatch, Pass},
+        program::ComputeProgram,
         scope::{Blocks, LightScope, Shared},
     },
 };
 
-/// Boundaries of shadow volumes; needs frame and light.
-pub(crate) const VOLUME: &str = include_str!("volume.wgsl");
-const LISTED: &str = include_str!("listed.wgsl");
+/// What is kept of the boundaries on the screen; needs the frame.
+pub(crate) const TILE: &str = include_str!("tile.wgsl");
+const VOLUME: &str = include_str!("volume.wgsl");
 const LIST: &str = include_str!("list.wgsl");
+const CLEAR: &str = include_str!("clear.wgsl");
+const EYE: &str = include_str!("eye.wgsl");
+const BOUNDS: &str = include_str!("bounds.wgsl");
 
 /// `OccluderParams` of `volume.wgsl`.
 #[repr(C)]
@@ -33,20 +36,26 @@ pub(crate) struct ParamsUniform {
     pub(crate) walls: u32,
     pub(crate) most: [f32; 3],
     pub(crate) caps: u32,
-    pub(crate) arguments: u32,
+    pub(crate) counts: u32,
     pub(crate) columns: u32,
     pad: [u32; 2],
 }
 
-/// Elements that a workgroup looks at.
+/// Elements that a workgroup looks at, tiles that it clears.
 const GROUP: u32 = 64;
+/// Pieces that a workgroup takes at a time.
+const PIECES: u32 = 16;
 /// The most workgroups a row has.
 const MAX_COLUMNS: u32 = 32_768;
-/// Words of the arguments of a run's two draws.
-const ARGUMENTS: u32 = 8;
+/// The most workgroups that share the pieces of a run.
+const MAX_SHARING: u32 = 512;
+/// Pixels of a tile's side.
+const SIDE: u32 = 4;
+/// Triangles of a box.
+const OF_BOX: u32 = 12;
 
 /// The resources of `volume.wgsl`.
-pub(crate) fn own() -> [wgpu::BindGroupLayoutEntry; 4] {
+fn own() -> [wgpu::BindGroupLayoutEntry; 4] {
     let [places, corners, elements] = [0, 1, 2].map(|binding| layout::storage(binding, true));
     [
         places,
@@ -56,65 +65,50 @@ pub(crate) fn own() -> [wgpu::BindGroupLayoutEntry; 4] {
     ]
 }
 
-/// What lists boundaries, and one program a kind of them.
+/// The shaders that find the boundaries on the screen.
 pub(crate) struct VolumePrograms {
-    clear: ComputeProgram,
+    clear_eye: ComputeProgram,
+    eye: ComputeProgram,
+    list_clear: ComputeProgram,
     list_walls: ComputeProgram,
     list_caps: ComputeProgram,
-    wall: ScreenProgram,
-    cap: ScreenProgram,
-    far_cap: ScreenProgram,
+    clear_bounds: ComputeProgram,
+    walls: ComputeProgram,
+    caps: ComputeProgram,
+    far_caps: ComputeProgram,
 }
 
 impl VolumePrograms {
-    /// Draws as `raster` says, with the fragment stages `boundary`, of an `OccluderVertex`, and `far_cap`.
-    pub(crate) fn new(
-        device: &wgpu::Device,
-        shared: &Shared,
-        raster: &Raster,
-        wgsl: &str,
-        [boundary, far_cap]: [&'static str; 2],
-    ) -> Self {
-        let list_own = [&own()[..], &[4, 5].map(|b| layout::storage(b, false))].concat();
-        let list = |entry_point| {
-            let modules = [VOLUME, LIST];
-            ComputeProgram::new(
-                device,
-                shared,
-                "occluder list",
-                &modules,
-                entry_point,
-                &list_own,
-            )
+    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let written = |binding| layout::storage(binding, false);
+        let read = |binding| layout::storage(binding, true);
+        let program = |modules: &[&str], entry_point, own: &[wgpu::BindGroupLayoutEntry]| {
+            ComputeProgram::new(device, shared, "occluders", modules, entry_point, own)
         };
-        let listed_own = [&own()[..], &[layout::storage(4, true)]].concat();
-        let draw = |label, vertex, fragment| {
-            let raster = Raster {
-                vertex,
-                ..raster.clone()
-            };
-            let modules = [VOLUME, LISTED, wgsl];
-            ScreenProgram::new(device, shared, label, &modules, fragment, &listed_own)
-                .drawing(raster)
+        let clear = |entry_point| {
+            program(&[TILE, CLEAR], entry_point, &[written(0), written(1)]).for_all_lights()
+        };
+        let of_mesh = |modules: &[&str], entry_point, more: &[wgpu::BindGroupLayoutEntry]| {
+            let own = [&own()[..], more].concat();
+            program(&[&[VOLUME], modules].concat(), entry_point, &own)
+        };
+        let list = |entry_point| of_mesh(&[LIST], entry_point, &[written(4), written(5)]);
+        let bounds = |entry_point| {
+            let more = [read(4), read(5), written(6)];
+            of_mesh(&[TILE, BOUNDS], entry_point, &more)
         };
         Self {
-            clear: list("list_clear").for_all_lights(),
+            clear_eye: clear("clear_eye"),
+            eye: of_mesh(&[EYE], "eye_triangle", &[written(4)]),
+            list_clear: list("list_clear").for_all_lights(),
             list_walls: list("list_walls"),
             list_caps: list("list_caps"),
-            wall: draw("occluder walls", "occluder_wall", boundary),
-            cap: draw("occluder caps", "occluder_cap", boundary),
-            far_cap: draw("occluder far caps", "occluder_far_cap", far_cap),
+            clear_bounds: clear("clear_bounds"),
+            walls: bounds("bounds_walls"),
+            caps: bounds("bounds_caps"),
+            far_caps: bounds("bounds_far_caps"),
         }
     }
-}
-
-/// Occluders on the device, in runs of one mesh each.
-pub(crate) struct Volumes<'a> {
-    runs: Vec<(&'a OccluderMesh, Range<u32>)>,
-    places: wgpu::Buffer,
-    params: Blocks<ParamsUniform>,
-    list: wgpu::Buffer,
-    arguments: wgpu::Buffer,
 }
 
 /// Names of a light's buffers.
@@ -122,7 +116,9 @@ pub(crate) struct Names {
     pub(crate) places: &'static str,
     pub(crate) params: &'static str,
     pub(crate) list: &'static str,
-    pub(crate) arguments: &'static str,
+    pub(crate) counts: &'static str,
+    pub(crate) eye: &'static str,
+    pub(crate) tiles: &'static str,
 }
 
 /// Bytes of the list of all walls and caps.
@@ -146,13 +142,49 @@ pub(crate) fn check_list(
     )
 }
 
+/// Tiles of a picture.
+fn tiles(size: [u32; 2]) -> u64 {
+    let [columns, rows] = size.map(|side| u64::from(side.div_ceil(SIDE)));
+    columns * rows
+}
+
+/// Bytes of what is kept a picture.
+pub(crate) fn tile_bytes(size: [u32; 2]) -> u64 {
+    8 * tiles(size)
+}
+
+/// The passes that find where these occluders' shadow volumes begin and end on the screen, and the tiles that they leave
+/// it in (see `tile.wgsl`).
+pub(crate) fn passes(
+    names: &Names,
+    occluders: &[Occluder<'_>],
+    programs: &VolumePrograms,
+    scope: &mut LightScope<'_>,
+) -> ([Pass; 3], wgpu::Buffer) {
+    let volumes = Volumes::new(names, occluders, scope);
+    let passes = [
+        ("eye in shadow", volumes.eye(programs, scope)),
+        ("list silhouettes", volumes.list(programs, scope)),
+        ("shadow volumes", volumes.bounds(programs, scope)),
+    ]
+    .map(|(name, dispatches)| Pass::compute(scope.pass_name(name), dispatches));
+    (passes, volumes.tiles)
+}
+
+/// Occluders on the device, in runs of one mesh each.
+struct Volumes<'a> {
+    runs: Vec<(&'a OccluderMesh, Range<u32>)>,
+    places: wgpu::Buffer,
+    params: Blocks<ParamsUniform>,
+    list: wgpu::Buffer,
+    counts: wgpu::Buffer,
+    eye: wgpu::Buffer,
+    tiles: wgpu::Buffer,
+}
+
 impl<'a> Volumes<'a> {
     /// Uploads places relative to the eye, under names of this light's.
-    pub(crate) fn new(
-        names: &Names,
-        occluders: &'a [Occluder<'a>],
-        scope: &mut LightScope<'_>,
-    ) -> Self {
+    fn new(names: &Names, occluders: &'a [Occluder<'a>], scope: &mut LightScope<'_>) -> Self {
         let from_eye = DMat4::from_translation(-scope.rays.eye);
         let place = |occluder: &Occluder<'_>| {
             let world_from_mesh = Mat4::from_cols_array_2d(&occluder.world_from_mesh);
@@ -167,20 +199,19 @@ impl<'a> Volumes<'a> {
         }
         let runs = runs(occluders);
         let uniforms = uniforms(&runs);
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-        let bytes = 4 * u64::from(ARGUMENTS) * (runs.len() as u64).max(1);
-        let key = (Some(scope.index), names.arguments);
         Self {
             places: scope.upload(names.places, &places),
             params: scope.blocks(names.params, uniforms),
             list: scope.storage(names.list, list_bytes(occluders)),
-            arguments: scope.pool.buffer(scope.device, key, bytes, usage),
+            counts: scope.storage(names.counts, 8 * (runs.len() as u64).max(1)),
+            eye: scope.storage(names.eye, 4),
+            tiles: scope.storage(names.tiles, tile_bytes(scope.size)),
             runs,
         }
     }
 
     /// The first four resources of a run's passes.
-    pub(crate) fn resources<'b>(
+    fn resources<'b>(
         &'b self,
         run: usize,
         elements: &'b wgpu::Buffer,
@@ -194,67 +225,83 @@ impl<'a> Volumes<'a> {
     }
 
     /// The runs' meshes and how many places each has.
-    pub(crate) fn runs(&self) -> impl Iterator<Item = (usize, &'a OccluderMesh, u32)> {
+    fn runs(&self) -> impl Iterator<Item = (usize, &'a OccluderMesh, u32)> {
         let runs = self.runs.iter().enumerate();
         runs.map(|(run, (mesh, places))| (run, *mesh, places.len() as u32))
     }
 
     /// Workgroups that look at so many elements of each of a run's places.
-    pub(crate) fn workgroups(&self, run: usize, elements: u32) -> [u32; 3] {
+    fn workgroups(&self, run: usize, elements: u32) -> [u32; 3] {
         let ParamsUniform {
             columns, places, ..
         } = self.params.values[run];
         [columns, elements.div_ceil(GROUP).div_ceil(columns), places]
     }
 
-    /// The pass that lists what is to be drawn.
-    pub(crate) fn list(
+    /// Asks whether the eye is in a shadow.
+    fn eye(&self, programs: &VolumePrograms, scope: &LightScope<'_>) -> Vec<Dispatch> {
+        let clear = self.clear(&programs.clear_eye, [1; 3], scope);
+        let asked = self.runs().map(|(run, mesh, _)| {
+            let own = [self.eye.as_entire_binding()];
+            let resources = [&self.resources(run, &mesh.triangles)[..], &own].concat();
+            let groups = self.workgroups(run, mesh.triangles());
+            scope.dispatch(&programs.eye, &resources, groups)
+        });
+        std::iter::once(clear).chain(asked).collect()
+    }
+
+    fn clear(
         &self,
-        name: &str,
-        programs: &VolumePrograms,
+        program: &ComputeProgram,
+        groups: [u32; 3],
         scope: &LightScope<'_>,
-    ) -> Pass {
-        let dispatch = |program: &ComputeProgram, run, elements, groups: [u32; 3]| -> Dispatch {
-            let lists = [&self.list, &self.arguments].map(|b| b.as_entire_binding());
+    ) -> Dispatch {
+        let own = [&self.eye, &self.tiles].map(|buffer| buffer.as_entire_binding());
+        scope.dispatch(program, &own, groups)
+    }
+
+    /// Lists the boundaries.
+    fn list(&self, programs: &VolumePrograms, scope: &LightScope<'_>) -> Vec<Dispatch> {
+        let dispatch = |program, run, elements: &wgpu::Buffer, groups: [u32; 3]| {
+            let lists = [&self.list, &self.counts].map(|b| b.as_entire_binding());
             let resources = [&self.resources(run, elements)[..], &lists].concat();
             scope.dispatch(program, &resources, groups)
         };
-        let mut dispatches = Vec::new();
-        for (run, mesh, _) in self.runs() {
-            let (walls, caps) = (
-                self.workgroups(run, mesh.edge_count),
-                self.workgroups(run, mesh.triangle_count),
-            );
-            dispatches.push(dispatch(&programs.clear, run, &mesh.edges, [1; 3]));
-            dispatches.push(dispatch(&programs.list_walls, run, &mesh.edges, walls));
-            dispatches.push(dispatch(&programs.list_caps, run, &mesh.triangles, caps));
-        }
-        Pass::compute(scope.pass_name(name), dispatches)
+        let of_run = |(run, mesh, _): (usize, &OccluderMesh, u32)| {
+            let walls = self.workgroups(run, mesh.edge_count);
+            let caps = self.workgroups(run, mesh.triangle_count);
+            [
+                dispatch(&programs.list_clear, run, &mesh.edges, [1; 3]),
+                dispatch(&programs.list_walls, run, &mesh.edges, walls),
+                dispatch(&programs.list_caps, run, &mesh.triangles, caps),
+            ]
+        };
+        self.runs().flat_map(of_run).collect()
     }
 
-    /// The draws of all boundaries that were listed.
-    pub(crate) fn draws(&self, programs: &VolumePrograms, scope: &LightScope<'_>) -> Vec<Draw> {
+    /// Rasterises those that were listed.
+    fn bounds(&self, programs: &VolumePrograms, scope: &LightScope<'_>) -> Vec<Dispatch> {
+        let of_pieces = |program, run, elements: &wgpu::Buffer, most: u64| {
+            let own = [&self.list, &self.counts, &self.tiles].map(|b| b.as_entire_binding());
+            let resources = [&self.resources(run, elements)[..], &own].concat();
+            let groups = most.div_ceil(PIECES.into()).clamp(1, MAX_SHARING.into()) as u32;
+            scope.dispatch(program, &resources, [groups, 1, 1])
+        };
+        let groups = tiles(scope.size).div_ceil(GROUP.into());
+        let columns = groups.min(MAX_COLUMNS.into());
+        let groups = [columns as u32, groups.div_ceil(columns) as u32, 1];
+        let mut dispatches = vec![self.clear(&programs.clear_bounds, groups, scope)];
         let is_local = scope.variant.kind != 0;
-        let mut draws = Vec::new();
         for (run, mesh, places) in self.runs() {
-            let mut push = |program: &ScreenProgram, elements: &wgpu::Buffer, vertices| {
-                let list = [self.list.as_entire_binding()];
-                let resources = [&self.resources(run, elements)[..], &list].concat();
-                draws.push(scope.draw_mesh(program, &resources, vertices));
-            };
-            let first = 4 * u64::from(self.params.values[run].arguments);
-            let listed = |offset| Vertices::Indirect(self.arguments.clone(), offset);
-            push(&programs.wall, &mesh.edges, listed(first));
-            push(&programs.cap, &mesh.triangles, listed(first + 16));
+            let [walls, caps, far_caps] = [mesh.edge_count, mesh.triangle_count, OF_BOX]
+                .map(|pieces| u64::from(places) * u64::from(pieces));
+            dispatches.push(of_pieces(&programs.walls, run, &mesh.edges, walls));
+            dispatches.push(of_pieces(&programs.caps, run, &mesh.triangles, caps));
             if is_local {
-                let boxes = Vertices::Direct {
-                    vertices: 36,
-                    instances: places,
-                };
-                push(&programs.far_cap, &mesh.triangles, boxes);
+                dispatches.push(of_pieces(&programs.far_caps, run, &mesh.triangles, far_caps));
             }
         }
-        draws
+        dispatches
     }
 }
 
@@ -292,7 +339,7 @@ fn uniforms(runs: &[(&OccluderMesh, Range<u32>)]) -> Vec<ParamsUniform> {
                 walls: next(count * mesh.edge_count),
                 most: mesh.bounds[1],
                 caps: next(count * mesh.triangle_count),
-                arguments: run * ARGUMENTS,
+                counts: 2 * run,
                 columns: most.div_ceil(GROUP).clamp(1, MAX_COLUMNS),
                 pad: [0; 2],
             }

@@ -1,8 +1,8 @@
-// Lists the walls that are silhouettes, and the triangles that any pixel sees, for draws of just these. What lies in the
-// shadow of something else casts its own inside that: nothing of it bounds the union.
+// Lists the walls that are silhouettes, and the triangles that any pixel sees. What lies in the shadow of something else casts
+// its own inside that: nothing of it bounds the union.
 
 @group(2) @binding(4) var<storage, read_write> list_entries: array<vec2u>; // an element's index and its place's
-@group(2) @binding(5) var<storage, read_write> list_arguments: array<atomic<u32>>;
+@group(2) @binding(5) var<storage, read_write> list_counts: array<atomic<u32>>; // of walls and caps, run by run
 
 const LIST_GROUP: u32 = 64u;
 // Rasterisers keep places in a pixel as whole numbers of 1/256 at least [pixels].
@@ -15,9 +15,8 @@ const LIST_APART: f32 = 1e-3;
 
 @compute @workgroup_size(1)
 fn list_clear() {
-    for (var i = 0u; i < 8u; i++) {
-        atomicStore(&list_arguments[occluder_params.arguments + i], u32(i % 4u == 1u));
-    }
+    atomicStore(&list_counts[occluder_params.counts], 0u);
+    atomicStore(&list_counts[occluder_params.counts + 1u], 0u);
 }
 
 @compute @workgroup_size(64)
@@ -29,8 +28,8 @@ fn list_walls(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
     let place = occluder_params.first_place + group.z;
     let wall = occluder_wall_of(edge, place);
     if !wall.is_inside && !list_is_shaded(wall.a, wall.b, wall.b) {
-        let vertex = atomicAdd(&list_arguments[occluder_params.arguments], 6u);
-        list_entries[occluder_params.walls + vertex / 6u] = vec2u(edge, place);
+        let index = atomicAdd(&list_counts[occluder_params.counts], 1u);
+        list_entries[occluder_params.walls + index] = vec2u(edge, place);
     }
 }
 
@@ -43,8 +42,8 @@ fn list_caps(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
     let place = occluder_params.first_place + group.z;
     let p = occluder_triangle(triangle, place);
     if list_is_seen(p) && !list_is_shaded(p[0], p[1], p[2]) {
-        let vertex = atomicAdd(&list_arguments[occluder_params.arguments + 4u], 3u);
-        list_entries[occluder_params.caps + vertex / 3u] = vec2u(triangle, place);
+        let index = atomicAdd(&list_counts[occluder_params.counts + 1u], 1u);
+        list_entries[occluder_params.caps + index] = vec2u(triangle, place);
     }
 }
 
@@ -54,11 +53,11 @@ fn list_is_seen(p: array<vec3f, 3>) -> bool {
     var most = vec2f(-1e30);
     var nearest = 1e30;
     for (var i = 0u; i < 3u; i++) {
-        let clip = occluder_project(vec4f(p[i], 1.0));
-        let pixel = (0.5 + vec2f(0.5, -0.5) * clip.xy / clip.w) * frame.camera.size;
+        let on_screen = occluder_on_screen(vec4f(p[i], 1.0));
+        let pixel = on_screen.xy / on_screen.z;
         least = min(least, pixel);
         most = max(most, pixel);
-        nearest = min(nearest, clip.w);
+        nearest = min(nearest, on_screen.z);
     }
     // Through the eye's plane: anywhere.
     if !(nearest > 0.0) {

@@ -14,6 +14,9 @@
 //! Where there is a shadow map, pieces whose texels are all covered from nearer to the light are left out: their shadow is
 //! inside that of what covers them. Of a dragon lit from the side that leaves a fraction of its silhouettes.
 //!
+//! Where they begin and end along the rays of each tile of 4 x 4 pixels is found by a conservative rasteriser in compute
+//! (`bounds.wgsl`): silhouettes' walls are long and thin, and a fragment a pixel of each costs many times as much.
+//!
 //! A mesh is welded and its edges are found once, when it is uploaded; silhouettes are found on the GPU, light by light.
 
 mod edges;

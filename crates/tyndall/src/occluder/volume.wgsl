@@ -15,7 +15,7 @@ struct OccluderParams {
     walls: u32, // where they begin in the list
     most: vec3f,
     caps: u32,
-    arguments: u32, // of the walls' draw, in words; the caps' follow
+    counts: u32, // where the number of walls listed stands; that of the caps follows
     columns: u32, // workgroups a row
 }
 
@@ -26,12 +26,12 @@ const OCCLUDER_ROUNDING: f32 = 2e-7;
 const OCCLUDER_ENTERS: f32 = 1.0; // the shadow, where it runs along the plane's normal
 const OCCLUDER_EITHER: f32 = 0.0;
 
-struct OccluderVertex {
-    @builtin(position) @invariant position: vec4f,
-    @location(0) @interpolate(flat) anchor: vec3f, // a point of the plane
-    @location(1) @interpolate(flat) normal: vec3f, // unit, into the shadow
-    @location(2) @interpolate(flat) side: f32, // OCCLUDER_ENTERS or OCCLUDER_EITHER
-    @location(3) @interpolate(flat) slack: f32, // how far the normal may be off [rad]
+// A piece's plane, and on which side the shadow lies.
+struct OccluderPlane {
+    anchor: vec3f, // a point of it
+    normal: vec3f, // unit, into the shadow
+    side: f32, // OCCLUDER_ENTERS or OCCLUDER_EITHER
+    slack: f32, // how far the normal may be off [rad]
 }
 
 fn occluder_corner(index: u32, place: u32) -> vec3f {
@@ -47,24 +47,22 @@ fn occluder_way(point: vec3f) -> vec3f {
     return point - light.position;
 }
 
-// On the screen, of a point (1) or a direction (0); wherever along the ray, only what lies behind the eye is clipped.
-fn occluder_project(p: vec4f) -> vec4f {
+// On the screen, of a point (1) or a direction (0): (x, y, w, q), where (x, y) / w is the place [pixels], w > 0 what lies before
+// the eye, and q / w what is linear on the screen: the inverse of the view depth, or of an orthographic camera the view depth.
+fn occluder_on_screen(p: vec4f) -> vec4f {
     let camera = frame.camera;
     let on_plane = vec2f(dot(camera.right, p.xyz), dot(camera.up, p.xyz));
-    if camera_is_orthographic() {
-        return vec4f((on_plane - p.w * camera.center) / camera.half_extent, 0.5 * p.w, p.w);
-    }
     let depth = dot(camera.forward, p.xyz);
-    return vec4f((on_plane - depth * camera.center) / camera.half_extent, 0.5 * depth, depth);
+    let wq = select(vec2f(depth, p.w), vec2f(p.w, depth), camera_is_orthographic());
+    let ndc = (on_plane - wq.x * camera.center) / camera.half_extent;
+    return vec4f((0.5 * wq.x + vec2f(0.5, -0.5) * ndc) * camera.size, wq);
 }
 
-// A wall's plane, and on which side the shadow lies.
+// What an edge sweeps out away from the light.
 struct OccluderWall {
     a: vec3f,
     b: vec3f,
-    normal: vec3f,
-    side: f32,
-    slack: f32,
+    plane: OccluderPlane,
     is_inside: bool, // of the union of its triangles' volumes
 }
 
@@ -79,30 +77,47 @@ fn occluder_wall_of(index: u32, place: u32) -> OccluderWall {
     // The sine of the angle between edge and light, and the rounding of what both are differences of, over it.
     let rounded = OCCLUDER_ROUNDING * (length(a) + length(b) + length(way));
     let slack = rounded * (length(along) + length(way)) / max(area, 1e-30);
-    var wall = OccluderWall(a, b, across / max(area, 1e-30), OCCLUDER_EITHER, slack, false);
+    var plane = OccluderPlane(a, across / max(area, 1e-30), OCCLUDER_EITHER, slack);
+    var is_inside = false;
     let c = occluder_elements[edge + 2u];
     let d = occluder_elements[edge + 3u];
     if c != OCCLUDER_NONE {
-        let inside = occluder_side(a, wall.normal, slack, occluder_corner(c, place));
+        let inside = occluder_side(plane, occluder_corner(c, place));
         var other = inside;
         if d != OCCLUDER_NONE {
-            other = occluder_side(a, wall.normal, slack, occluder_corner(d, place));
+            other = occluder_side(plane, occluder_corner(d, place));
         }
-        wall.is_inside = inside * other < 0.0;
+        is_inside = inside * other < 0.0;
         if inside * other > 0.0 {
-            wall.side = OCCLUDER_ENTERS;
-            wall.normal *= inside;
+            plane.side = OCCLUDER_ENTERS;
+            plane.normal *= inside;
         }
     }
-    return wall;
+    return OccluderWall(a, b, plane, is_inside);
 }
 
 // 1 or -1 where a point surely lies before or behind a plane, else 0.
-fn occluder_side(anchor: vec3f, normal: vec3f, slack: f32, point: vec3f) -> f32 {
-    let offset = point - anchor;
-    let rounded = slack * length(offset) + OCCLUDER_ROUNDING * (length(point) + length(anchor));
-    let height = dot(normal, offset);
+fn occluder_side(plane: OccluderPlane, point: vec3f) -> f32 {
+    let offset = point - plane.anchor;
+    let rounded = plane.slack * length(offset) + OCCLUDER_ROUNDING * (length(point) + length(plane.anchor));
+    let height = dot(plane.normal, offset);
     return select(0.0, sign(height), abs(height) > rounded);
+}
+
+// The plane of a triangle.
+fn occluder_cap_of(p: array<vec3f, 3>) -> OccluderPlane {
+    let across = cross(p[1] - p[0], p[2] - p[0]);
+    let area = length(across);
+    let longest = max(length(p[1] - p[0]), length(p[2] - p[0]));
+    let rounded = OCCLUDER_ROUNDING * (length(p[0]) + length(p[1]) + length(p[2]));
+    let slack = 2.0 * rounded * longest / max(area, 1e-30);
+    let normal = across / max(area, 1e-30);
+    let way = occluder_way(p[0]);
+    let inwards = dot(normal, way);
+    if abs(inwards) > slack * length(way) {
+        return OccluderPlane(p[0], normal * sign(inwards), OCCLUDER_ENTERS, slack);
+    }
+    return OccluderPlane(p[0], normal, OCCLUDER_EITHER, slack);
 }
 
 fn occluder_triangle(index: u32, place: u32) -> array<vec3f, 3> {

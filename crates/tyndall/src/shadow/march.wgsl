@@ -15,10 +15,10 @@ fn march_sample(ray: Ray, map_ray: ShadowRay, s: f32) -> vec3f {
     return reached * medium_scattering(-dot(incident.direction, ray.direction)) * incident.irradiance;
 }
 
-// The integral over a stretch [m] in equal steps.
+// The integral over a stretch [m] in equal steps, or none.
 fn march_equal(ray: Ray, stretch: vec2f, steps: u32) -> vec3f {
     let map_ray = shadow_ray(ray);
-    let step = (stretch.y - stretch.x) / f32(steps);
+    let step = (stretch.y - stretch.x) / f32(max(steps, 1u));
     var sum = vec3f(0.0);
     for (var i = 0u; i < steps; i++) {
         sum += march_sample(ray, map_ray, stretch.x + (f32(i) + 0.5) * step);

@@ -14,14 +14,14 @@ use crate::{
     gpu::{
         layout, limits,
         pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
-        program::{ComputeProgram, Raster, STENCIL_FORMAT, ScreenProgram, Stencil},
+        program::{ComputeProgram, STENCIL_FORMAT, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
         shader::MARCH,
         uniforms::CameraUniform,
     },
     occluder::{
         Occluder,
-        gpu::{Names, VolumePrograms, Volumes, check_list},
+        gpu::{self as volumes, Names, TILE, VolumePrograms, check_list},
     },
     validate::faces,
 };
@@ -34,7 +34,6 @@ const TILES: &str = include_str!("tiles.wgsl");
 const STENCIL: &str = include_str!("stencil.wgsl");
 const SUM: &str = include_str!("sum.wgsl");
 const SHOW: &str = include_str!("show.wgsl");
-const TOUCHED: &str = include_str!("touched.wgsl");
 const REPROJECT: &str = include_str!("reproject.wgsl");
 const RESTORE: &str = include_str!("restore.wgsl");
 
@@ -79,8 +78,6 @@ const STATE_BYTES: u64 = 28;
 const STALE: u64 = 8;
 /// Texels of a finest block's side, pixels of a tile's, invocations of a workgroup's.
 const SIDE: u32 = 8;
-/// What moving occluders are drawn on.
-const TOUCHED_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// The shaders of temporal reuse.
 pub(crate) struct Programs {
@@ -135,7 +132,7 @@ impl Programs {
             written(3),
             written(4),
             written(5),
-            layout::texels(6),
+            read(6),
             read(7),
         ];
         let reproject = [
@@ -163,7 +160,12 @@ impl Programs {
                 "reproject_tile",
                 &reproject,
             ),
-            tiles: compute("reuse tiles", &[REUSE, BLOCKS, TILES], "tiles", &tiles),
+            tiles: compute(
+                "reuse tiles",
+                &[REUSE, BLOCKS, TILE, TILES],
+                "tiles",
+                &tiles,
+            ),
             stencil: screen("reuse stencil", &[REUSE, STENCIL], "stencil", &aged).for_all_lights(),
             restore: screen(
                 "reuse restore",
@@ -174,13 +176,7 @@ impl Programs {
             .for_all_lights(),
             sum: screen("reuse sum", &[SUM], "sum", &[layout::texels(0)]).for_all_lights(),
             show: screen("reuse show", &[REUSE, STENCIL, SHOW], "show", &show).for_all_lights(),
-            touched: VolumePrograms::new(
-                device,
-                shared,
-                &Raster::full_screen(TOUCHED_FORMAT.into()),
-                TOUCHED,
-                ["touched", "touched"],
-            ),
+            touched: VolumePrograms::new(device, shared),
             gate: gate::Programs::new(device, shared, params),
         }
     }
@@ -217,8 +213,8 @@ pub(crate) fn check(
         let size = map.texture().size();
         u64::from(size.width) * u64::from(size.height) * u64::from(faces(light))
     });
-    // The map takes a word a texel, the witness two a pixel, what is found in another camera's picture four.
-    let pixel = if reuse.reproject.is_some() { 16 } else { 8 };
+    // The map takes a word a texel, depth and age one a pixel each, what is found in another camera's picture four.
+    let pixel = if reuse.reproject.is_some() { 16 } else { 4 };
     let needed = (4 * texels).max(pixel * u64::from(width) * u64::from(height));
     let of = format!("temporal reuse (lights[{index}])");
     limits::check_storage(limits, &of, &[("memory", needed)])
@@ -311,7 +307,7 @@ impl Buffers {
             .sum();
         let texels = u64::from(map[0]) * u64::from(map[1]) * u64::from(faces);
         let pixels = u64::from(scope.size[0]) * u64::from(scope.size[1]);
-        let witnessed = if scope.witness.is_some() { pixels } else { 1 };
+        let witnessed = scope.witness.as_ref().map_or(8, wgpu::Buffer::size);
         let found = if frame.reuse.reproject.is_some() {
             pixels
         } else {
@@ -331,7 +327,7 @@ impl Buffers {
             map_seen: scope.storage("reuse shadow map", 4 * texels.max(1)),
             depth_seen: scope.storage("reuse depth", 4 * pixels),
             age: scope.storage("reuse age", 4 * pixels),
-            witness_seen: scope.storage("reuse witness", 8 * witnessed),
+            witness_seen: scope.storage("reuse witness", witnessed),
             found: scope.storage("reuse found", 16 * found),
         }
     }
@@ -415,29 +411,21 @@ pub(crate) fn wrap(
     passes
 }
 
-/// Draws what moved; the picture is the last pass's witness then.
-fn touch(moved: &[Placed], programs: &Programs, scope: &mut LightScope<'_>) -> [Pass; 2] {
-    let target = picture("reuse touched", TOUCHED_FORMAT, scope);
+/// Finds where the shadows of what moved are on the screen: the last pass's witness then.
+fn touch(moved: &[Placed], programs: &Programs, scope: &mut LightScope<'_>) -> [Pass; 3] {
     let occluders: Vec<Occluder<'_>> = moved.iter().map(Placed::as_occluder).collect();
-    let volumes = Volumes::new(&NAMES, &occluders, scope);
-    scope.witness = Some(target.clone());
-    [
-        volumes.list("list what moved", &programs.touched, scope),
-        Pass {
-            name: scope.pass_name("what moved"),
-            work: Work::Draw {
-                target,
-                draws: volumes.draws(&programs.touched, scope),
-            },
-        },
-    ]
+    let (passes, tiles) = volumes::passes(&NAMES, &occluders, &programs.touched, scope);
+    scope.witness = Some(tiles);
+    passes
 }
 
 const NAMES: Names = Names {
     places: "reuse places",
     params: "reuse occluders",
     list: "reuse list",
-    arguments: "reuse arguments",
+    counts: "reuse counts",
+    eye: "reuse eye in shadow",
+    tiles: "reuse what moved",
 };
 
 /// The dispatches that leave the pixels' ages.
@@ -480,7 +468,7 @@ fn find(
         };
         dispatches.push(scope.dispatch(program, &resources, indirect(1 + level)));
     }
-    let absent = scope.shared.absent.light.clone();
+    let absent = scope.storage("reuse no witness", 8);
     let witness = scope.witness.clone().unwrap_or(absent);
     let tiles = [
         params,
@@ -489,7 +477,7 @@ fn find(
         buffers.depth_seen.as_entire_binding(),
         buffers.age.as_entire_binding(),
         buffers.witness_seen.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&witness),
+        witness.as_entire_binding(),
         buffers.found.as_entire_binding(),
     ];
     dispatches.push(scope.dispatch(&programs.tiles, &tiles, indirect(0)));

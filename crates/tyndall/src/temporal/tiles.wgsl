@@ -6,8 +6,8 @@
 @group(2) @binding(2) var<storage, read> tiles_blocks: array<vec2f>;
 @group(2) @binding(3) var<storage, read_write> tiles_depth: array<f32>;
 @group(2) @binding(4) var<storage, read_write> tiles_age: array<u32>; // see REUSE_AGE
-@group(2) @binding(5) var<storage, read_write> tiles_seen: array<vec2u>; // the witness of the frame before
-@group(2) @binding(6) var tiles_witness: texture_2d<f32>;
+@group(2) @binding(5) var<storage, read_write> tiles_seen: array<vec2f>; // the witness of the frame before
+@group(2) @binding(6) var<storage, read> tiles_witness: array<vec2f>; // see occluder/tile.wgsl
 @group(2) @binding(7) var<storage, read> tiles_found: array<vec4u>; // see reproject.wgsl
 
 const TILES_SIDE: u32 = 8u;
@@ -44,6 +44,9 @@ fn tiles(
         is_stale = tiles_pixel_changed(pixel, place, depth) || memory == REUSE_LOST;
     }
     workgroupBarrier();
+    if is_inside {
+        tiles_remember(pixel);
+    }
     let corner = vec2f(TILES_SIDE * tile.xy);
     let farthest = bitcast<f32>(atomicLoad(&tiles_farthest));
     let slabs = select(0u, TILES_SLABS, reuse.mask == REUSE_CHANGE);
@@ -103,16 +106,22 @@ fn tiles_memory(tile: vec2u, place: u32) -> u32 {
 fn tiles_pixel_changed(pixel: vec2u, place: u32, depth: f32) -> bool {
     var is_changed = bitcast<u32>(tiles_depth[place]) != bitcast<u32>(depth);
     tiles_depth[place] = depth;
+    let tile = occluder_tile_of(pixel);
     if reuse.mask == REUSE_GEOMETRY {
-        return textureLoad(tiles_witness, pixel, 0).x > 0.0;
+        return occluder_is_met(tiles_witness[tile]);
     }
     if reuse.has_witness == 1u {
-        let seen = textureLoad(tiles_witness, pixel, 0);
-        let witness = vec2u(pack2x16float(seen.xy), pack2x16float(seen.zw));
-        is_changed = is_changed || any(tiles_seen[place] != witness);
-        tiles_seen[place] = witness;
+        is_changed = is_changed || any(bitcast<vec2u>(tiles_seen[tile]) != bitcast<vec2u>(tiles_witness[tile]));
     }
     return is_changed && tiles_state.mode != REUSE_REPROJECT;
+}
+
+// Remembers the witness, a tile once.
+fn tiles_remember(pixel: vec2u) {
+    if reuse.has_witness == 1u && all(pixel % OCCLUDER_TILE == vec2u(0u)) {
+        let tile = occluder_tile_of(pixel);
+        tiles_seen[tile] = tiles_witness[tile];
+    }
 }
 
 // Eight corners of a slab of the beam: four rays round the tile, at two view depths.

@@ -15,13 +15,13 @@ const HYBRID_SHOW_LIGHT: u32 = 0u;
 const HYBRID_PARALLEL: f32 = 0.999999;
 
 @group(2) @binding(0) var<uniform> hybrid_params: HybridParams;
-@group(2) @binding(1) var hybrid_bounds: texture_2d<f32>;
+@group(2) @binding(1) var<storage, read> hybrid_tiles: array<vec2f>; // see tile.wgsl
 @group(2) @binding(2) var airlight_table: texture_2d_array<f32>;
 
 @fragment
 fn hybrid(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let ray = frame_ray(position);
-    let shaded = hybrid_shaded(ray, textureLoad(hybrid_bounds, vec2u(position.xy), 0).xyz);
+    let shaded = hybrid_shaded(ray, vec2u(position.xy));
     if hybrid_params.show != HYBRID_SHOW_LIGHT {
         return vec4f(shaded.x, shaded.y, shaded.y - shaded.x, 1.0);
     }
@@ -29,25 +29,29 @@ fn hybrid(@builtin(position) position: vec4f) -> @location(0) vec4f {
 }
 
 // The stretch [m] that holds every shadow on the ray; empty where x >= y.
-fn hybrid_shaded(ray: Ray, bounds: vec3f) -> vec2f {
+fn hybrid_shaded(ray: Ray, pixel: vec2u) -> vec2f {
+    let lit = vec2f(ray.length);
     let whole = vec2f(0.0, ray.length);
     let is_flat = camera_is_orthographic();
-    let runs_along = !light_is_local() && abs(dot(ray.direction, light.direction)) > HYBRID_PARALLEL;
+    // Along the light no wall may be met, and of a flat camera's rays some may be in a lamp's shadow from end to end.
+    let runs_along = abs(dot(ray.direction, light.direction)) > HYBRID_PARALLEL;
     if hybrid_params.bounds == HYBRID_NONE {
-        return vec2f(ray.length);
+        return lit;
     }
-    if hybrid_params.bounds == HYBRID_UNKNOWN || (is_flat && runs_along) {
+    if hybrid_params.bounds == HYBRID_UNKNOWN || (is_flat && (light_is_local() || runs_along)) {
         return whole;
     }
-    let may_start_shaded = is_flat && bounds.z > 0.0;
-    if all(bounds.xy == vec2f(0.0)) && !may_start_shaded {
-        return vec2f(ray.length);
+    let bounds = hybrid_tiles[occluder_tile_of(pixel)];
+    if !occluder_is_met(bounds) {
+        return lit;
     }
     // A ray that leaves a shadow entered it, and one that enters and does not leave ends there. Rays that do not start in
     // the eye may start in a shadow.
-    let front = select(saturate(1.0 - bounds.x), 0.0, is_flat || bounds.x == 0.0);
-    let back = select(min(bounds.y, 1.0), 1.0, bounds.y == 0.0 || bounds.z > 0.0);
-    return vec2f(front, back) * ray.length;
+    let depths = vec2f(
+        select(bounds.x, 0.0, is_flat || bounds.x == OCCLUDER_BEYOND),
+        select(bounds.y, OCCLUDER_BEYOND, bounds.y == 0.0),
+    );
+    return min(depths / dot(ray.direction, frame.camera.forward), vec2f(ray.length));
 }
 
 fn hybrid_light(ray: Ray, shaded: vec2f) -> vec3f {
@@ -55,16 +59,16 @@ fn hybrid_light(ray: Ray, shaded: vec2f) -> vec3f {
     if reach.x >= reach.y {
         return vec3f(0.0);
     }
-    let middle = clamp(shaded, vec2f(reach.x), vec2f(reach.y));
-    if middle.x >= middle.y {
-        return stretch_plain(ray, reach.x, reach.y);
-    }
+    let within = clamp(shaded, vec2f(reach.x), vec2f(reach.y));
+    let middle = select(within, vec2f(reach.y), within.x >= within.y);
     let share = (middle.y - middle.x) / (reach.y - reach.x);
     let steps = u32(ceil(share * f32(hybrid_params.steps)));
-    var sum = march_equal(ray, middle, max(steps, 1u));
-    // Of lights through pictures all is in the middle.
-    if LIGHT_TEXTURE == LIGHT_TEXTURE_NONE {
-        sum += stretch_plain(ray, reach.x, middle.x) + stretch_plain(ray, middle.y, reach.y);
+    var sum = march_equal(ray, middle, steps);
+    // Of lights through pictures all is in the middle. Turns of a loop cost nothing where there is nothing behind it.
+    let stretches = select(2u, 1u, middle.y >= reach.y);
+    for (var i = 0u; i < select(0u, stretches, LIGHT_TEXTURE == LIGHT_TEXTURE_NONE); i++) {
+        let stretch = select(vec2f(reach.x, middle.x), vec2f(middle.y, reach.y), i == 1u);
+        sum += stretch_plain(ray, stretch.x, stretch.y);
     }
     return sum;
 }

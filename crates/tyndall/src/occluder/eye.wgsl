@@ -6,11 +6,6 @@ const EYE_ROUNDING: f32 = 1e-4;
 
 @group(2) @binding(4) var<storage, read_write> eye_in_shadow: atomic<u32>;
 
-@compute @workgroup_size(1)
-fn eye_clear() {
-    atomicStore(&eye_in_shadow, 0u);
-}
-
 @compute @workgroup_size(64)
 fn eye_triangle(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let triangle = (group.y * occluder_params.columns + group.x) * EYE_SIDE + lane;
