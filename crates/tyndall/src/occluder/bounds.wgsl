@@ -7,17 +7,16 @@
 
 @group(2) @binding(4) var<storage, read> bounds_list: array<vec2u>; // an element's index and its place's
 @group(2) @binding(5) var<storage, read> bounds_counts: array<u32>; // of walls and caps, run by run
-@group(2) @binding(6) var<storage, read_write> bounds_tiles: array<atomic<u32>>; // nearest and farthest, see tile.wgsl
 
 const BOUNDS_LANES: u32 = 16u;
+// Listed pieces that a workgroup takes at a time.
+const BOUNDS_BATCH: u32 = 64u;
 // Rows of tiles that an invocation walks alone; of larger pieces each takes some of the rows.
 const BOUNDS_ALONE: u32 = 4u;
 // Rounding of corners on the screen, over the largest of a piece.
 const BOUNDS_ROUNDING: f32 = 1e-6;
 // Room about a tile [pixels].
 const BOUNDS_ROOM: f32 = 1.0 / 64.0;
-// Bits of a depth that are rounded away: what moves a little keeps its bounds.
-const BOUNDS_COARSE: u32 = 0x7fffu;
 
 const BOUNDS_WALLS: u32 = 0u;
 const BOUNDS_CAPS: u32 = 1u;
@@ -29,8 +28,7 @@ struct BoundsPiece {
     key: vec3f, // q / w at (x, y) is dot(key, (x, y, 1)), unless it is off by more than
     key_off: f32,
     rounding: vec2f, // of x, y and of w
-    is_entered: bool, // which of a tile's two bounds it may be
-    is_left: bool,
+    facing: vec2<bool>, // see occluder_facing
     // What is wider than high has x and y exchanged, so that rows are short.
     size: vec2f, // of the picture [pixels]
     strides: vec2u, // between tiles of a row and between rows
@@ -43,7 +41,9 @@ struct BoundsExtent {
     most: vec3f,
 }
 
-var<workgroup> bounds_long: array<u32, BOUNDS_LANES>; // pieces of many rows
+var<workgroup> bounds_lit: array<u32, BOUNDS_BATCH>; // pieces that are not in the shadow of others
+var<workgroup> bounds_lit_count: atomic<u32>;
+var<workgroup> bounds_long: array<u32, BOUNDS_BATCH>; // those of many rows
 var<workgroup> bounds_long_count: atomic<u32>;
 
 @compute @workgroup_size(16)
@@ -73,22 +73,30 @@ fn bounds_far_caps(
     bounds_all(BOUNDS_FAR_CAPS, 12u * occluder_params.places, group.x, groups.x, lane);
 }
 
-// All pieces of a kind: an invocation each those of few rows, then together the others.
+// All pieces of a kind, in batches: first those are left that are not in the shadow of others; then each invocation takes some of
+// few rows, and all together those of many.
 fn bounds_all(kind: u32, count: u32, group: u32, groups: u32, lane: u32) {
-    for (var first = group * BOUNDS_LANES; first < count; first += groups * BOUNDS_LANES) {
+    for (var first = group * BOUNDS_BATCH; first < count; first += groups * BOUNDS_BATCH) {
         if lane == 0u {
+            atomicStore(&bounds_lit_count, 0u);
             atomicStore(&bounds_long_count, 0u);
         }
         workgroupBarrier();
-        let index = first + lane;
-        if index < count {
-            let piece = bounds_piece(kind, index);
+        for (var index = first + lane; index < min(first + BOUNDS_BATCH, count); index += BOUNDS_LANES) {
+            if !bounds_is_shaded(kind, index) {
+                bounds_lit[atomicAdd(&bounds_lit_count, 1u)] = index;
+            }
+        }
+        workgroupBarrier();
+        let lit = atomicLoad(&bounds_lit_count);
+        for (var i = lane; i < lit; i += BOUNDS_LANES) {
+            let piece = bounds_piece(kind, bounds_lit[i]);
             let is_long = piece.rows.y > piece.rows.x + BOUNDS_ALONE;
             for (var row = piece.rows.x; row < select(piece.rows.y, 0u, is_long); row++) {
                 bounds_row(piece, row);
             }
             if is_long {
-                bounds_long[atomicAdd(&bounds_long_count, 1u)] = index;
+                bounds_long[atomicAdd(&bounds_long_count, 1u)] = bounds_lit[i];
             }
         }
         workgroupBarrier();
@@ -103,17 +111,27 @@ fn bounds_all(kind: u32, count: u32, group: u32, groups: u32, lane: u32) {
     }
 }
 
+// Caps are small: to ask would cost more than to rasterise them.
+fn bounds_is_shaded(kind: u32, index: u32) -> bool {
+    if kind != BOUNDS_WALLS {
+        return false;
+    }
+    let listed = bounds_list[occluder_params.walls + index];
+    let edge = occluder_edge(listed.x, listed.y);
+    return shaded_surely(edge[0], edge[1]);
+}
+
 fn bounds_piece(kind: u32, index: u32) -> BoundsPiece {
     switch kind {
         case BOUNDS_WALLS: {
             let listed = bounds_list[occluder_params.walls + index];
             let wall = occluder_wall_of(listed.x, listed.y);
-            return bounds_facing(array<vec4f, 4>(
+            return bounds_piece_of(array<vec4f, 4>(
                 occluder_on_screen(vec4f(wall.a, 1.0)),
                 occluder_on_screen(vec4f(wall.b, 1.0)),
                 occluder_on_screen(vec4f(occluder_way(wall.b), 0.0)),
                 occluder_on_screen(vec4f(occluder_way(wall.a), 0.0)),
-            ), wall.plane);
+            ), occluder_facing(wall.plane));
         }
         case BOUNDS_CAPS: {
             let listed = bounds_list[occluder_params.caps + index];
@@ -121,14 +139,14 @@ fn bounds_piece(kind: u32, index: u32) -> BoundsPiece {
             let a = occluder_on_screen(vec4f(p[0], 1.0));
             let b = occluder_on_screen(vec4f(p[1], 1.0));
             let c = occluder_on_screen(vec4f(p[2], 1.0));
-            return bounds_facing(array<vec4f, 4>(a, b, c, a), occluder_cap_of(p));
+            return bounds_piece_of(array<vec4f, 4>(a, b, c, a), occluder_facing(occluder_cap_of(p)));
         }
         default: {
             let place = occluder_params.first_place + index / 12u;
             let a = bounds_at_infinity(index % 12u, 0u, place);
             let b = bounds_at_infinity(index % 12u, 1u, place);
             let c = bounds_at_infinity(index % 12u, 2u, place);
-            return bounds_piece_of(array<vec4f, 4>(a, b, c, a), false, true);
+            return bounds_piece_of(array<vec4f, 4>(a, b, c, a), vec2<bool>(false, true));
         }
     }
 }
@@ -148,17 +166,7 @@ fn bounds_at_infinity(triangle: u32, corner: u32, place: u32) -> vec4f {
     return occluder_on_screen(vec4f(occluder_way(point), 0.0));
 }
 
-// Rays that meet a piece enter the shadow or leave it, all alike; where rounding decides, both.
-fn bounds_facing(corners: array<vec4f, 4>, plane: OccluderPlane) -> BoundsPiece {
-    let is_flat = camera_is_orthographic();
-    let towards = select(plane.anchor, frame.camera.forward, is_flat);
-    let slope = dot(plane.normal, towards);
-    let rounding = select(2.0 * OCCLUDER_ROUNDING, 0.0, is_flat);
-    let is_certain = plane.side == OCCLUDER_ENTERS && abs(slope) > (plane.slack + rounding) * length(towards);
-    return bounds_piece_of(corners, !(is_certain && slope < 0.0), !(is_certain && slope > 0.0));
-}
-
-fn bounds_piece_of(corners: array<vec4f, 4>, is_entered: bool, is_left: bool) -> BoundsPiece {
+fn bounds_piece_of(corners: array<vec4f, 4>, facing: vec2<bool>) -> BoundsPiece {
     let a = corners[0];
     let u = corners[1] - a;
     let v = corners[2] - a;
@@ -186,8 +194,7 @@ fn bounds_piece_of(corners: array<vec4f, 4>, is_entered: bool, is_left: bool) ->
         select(vec3f(0.0), key, has_key),
         select(OCCLUDER_BEYOND, key_off, has_key),
         rounding,
-        is_entered,
-        is_left,
+        facing,
         size,
         vec2u(1u, occluder_tiles().x),
         vec2u(0u),
@@ -199,11 +206,11 @@ fn bounds_piece_of(corners: array<vec4f, 4>, is_entered: bool, is_left: bool) ->
 // The same with x and y exchanged where it is wider than high, and with its rows.
 fn bounds_upright(piece: BoundsPiece, extent: BoundsExtent) -> BoundsPiece {
     var upright = piece;
-    var least = extent.least.y;
-    var most = extent.most.y;
-    if extent.most.x - extent.least.x > most - least {
-        least = extent.least.x;
-        most = extent.most.x;
+    var least = extent.least.xy;
+    var most = extent.most.xy;
+    if most.x - least.x > most.y - least.y {
+        least = least.yx;
+        most = most.yx;
         for (var i = 0u; i < 4u; i++) {
             upright.corners[i] = piece.corners[i].yxzw;
             upright.edges[i] = piece.edges[i].yxz;
@@ -212,7 +219,7 @@ fn bounds_upright(piece: BoundsPiece, extent: BoundsExtent) -> BoundsPiece {
         upright.size = piece.size.yx;
         upright.strides = piece.strides.yx;
     }
-    upright.rows = bounds_of_tiles(least, most, upright.size.y);
+    upright.rows = bounds_of_tiles(least.y, most.y, upright.size.y);
     return upright;
 }
 
@@ -291,22 +298,11 @@ fn bounds_row(piece: BoundsPiece, row: u32) {
     for (var column = columns.x; column < columns.y; column++) {
         let left = piece.key.x * (side * f32(column) - BOUNDS_ROOM);
         let keys = vec2f(max(extent.least.z, least + left), min(extent.most.z, most + left));
-        bounds_write(row * piece.strides.y + column * piece.strides.x, keys, piece.is_entered, piece.is_left);
-    }
-}
-
-// Of depths between these keys, in whatever order.
-fn bounds_write(tile: u32, keys: vec2f, is_entered: bool, is_left: bool) {
-    var depths = vec2f(min(keys.x, keys.y), max(keys.x, keys.y));
-    if !camera_is_orthographic() {
-        depths = 1.0 / max(depths.yx, vec2f(1.0 / OCCLUDER_BEYOND));
-    }
-    // Positive floats are ordered as their bits are.
-    let bits = bitcast<vec2u>(clamp(depths, vec2f(0.0), vec2f(OCCLUDER_BEYOND)));
-    if is_entered {
-        atomicMin(&bounds_tiles[2u * tile], bits.x & ~BOUNDS_COARSE);
-    }
-    if is_left && depths.y >= 0.0 {
-        atomicMax(&bounds_tiles[2u * tile + 1u], max(bits.y + BOUNDS_COARSE, BOUNDS_COARSE + 1u) & ~BOUNDS_COARSE);
+        // In whatever order.
+        var depths = vec2f(min(keys.x, keys.y), max(keys.x, keys.y));
+        if !camera_is_orthographic() {
+            depths = 1.0 / max(depths.yx, vec2f(1.0 / OCCLUDER_BEYOND));
+        }
+        write_depths(row * piece.strides.y + column * piece.strides.x, depths, piece.facing);
     }
 }

@@ -22,6 +22,8 @@ const VOLUME: &str = include_str!("volume.wgsl");
 const LIST: &str = include_str!("list.wgsl");
 const CLEAR: &str = include_str!("clear.wgsl");
 const EYE: &str = include_str!("eye.wgsl");
+const WRITE: &str = include_str!("write.wgsl");
+const SHADED: &str = include_str!("shaded.wgsl");
 const BOUNDS: &str = include_str!("bounds.wgsl");
 
 /// `OccluderParams` of `volume.wgsl`.
@@ -44,7 +46,7 @@ pub(crate) struct ParamsUniform {
 /// Elements that a workgroup looks at, tiles that it clears.
 const GROUP: u32 = 64;
 /// Pieces that a workgroup takes at a time.
-const PIECES: u32 = 16;
+const PIECES: u32 = 64;
 /// The most workgroups a row has.
 const MAX_COLUMNS: u32 = 32_768;
 /// The most workgroups that share the pieces of a run.
@@ -92,10 +94,13 @@ impl VolumePrograms {
             let own = [&own()[..], more].concat();
             program(&[&[VOLUME], modules].concat(), entry_point, &own)
         };
-        let list = |entry_point| of_mesh(&[LIST], entry_point, &[written(4), written(5)]);
+        let list = |entry_point| {
+            let more = [4, 5, 6].map(written);
+            of_mesh(&[TILE, WRITE, LIST], entry_point, &more)
+        };
         let bounds = |entry_point| {
             let more = [read(4), read(5), written(6)];
-            of_mesh(&[TILE, BOUNDS], entry_point, &more)
+            of_mesh(&[TILE, WRITE, SHADED, BOUNDS], entry_point, &more)
         };
         Self {
             clear_eye: clear("clear_eye"),
@@ -260,11 +265,11 @@ impl<'a> Volumes<'a> {
         scope.dispatch(program, &own, groups)
     }
 
-    /// Lists the boundaries.
+    /// Lists the boundaries, and rasterises the smallest.
     fn list(&self, programs: &VolumePrograms, scope: &LightScope<'_>) -> Vec<Dispatch> {
         let dispatch = |program, run, elements: &wgpu::Buffer, groups: [u32; 3]| {
-            let lists = [&self.list, &self.counts].map(|b| b.as_entire_binding());
-            let resources = [&self.resources(run, elements)[..], &lists].concat();
+            let own = [&self.list, &self.counts, &self.tiles].map(|b| b.as_entire_binding());
+            let resources = [&self.resources(run, elements)[..], &own].concat();
             scope.dispatch(program, &resources, groups)
         };
         let of_run = |(run, mesh, _): (usize, &OccluderMesh, u32)| {
@@ -276,7 +281,12 @@ impl<'a> Volumes<'a> {
                 dispatch(&programs.list_caps, run, &mesh.triangles, caps),
             ]
         };
-        self.runs().flat_map(of_run).collect()
+        let groups = tiles(scope.size).div_ceil(GROUP.into());
+        let columns = groups.min(MAX_COLUMNS.into());
+        let groups = [columns as u32, groups.div_ceil(columns) as u32, 1];
+        let clear = self.clear(&programs.clear_bounds, groups, scope);
+        let listed = self.runs().flat_map(of_run);
+        std::iter::once(clear).chain(listed).collect()
     }
 
     /// Rasterises those that were listed.
@@ -287,10 +297,7 @@ impl<'a> Volumes<'a> {
             let groups = most.div_ceil(PIECES.into()).clamp(1, MAX_SHARING.into()) as u32;
             scope.dispatch(program, &resources, [groups, 1, 1])
         };
-        let groups = tiles(scope.size).div_ceil(GROUP.into());
-        let columns = groups.min(MAX_COLUMNS.into());
-        let groups = [columns as u32, groups.div_ceil(columns) as u32, 1];
-        let mut dispatches = vec![self.clear(&programs.clear_bounds, groups, scope)];
+        let mut dispatches = Vec::new();
         let is_local = scope.variant.kind != 0;
         for (run, mesh, places) in self.runs() {
             let [walls, caps, far_caps] = [mesh.edge_count, mesh.triangle_count, OF_BOX]

@@ -1,5 +1,5 @@
-// Lists the walls that are silhouettes, and the triangles that any pixel sees. What lies in the shadow of something else casts
-// its own inside that: nothing of it bounds the union.
+// Lists the walls that are silhouettes, and the triangles that many pixels see; those that few see are written to the screen at
+// once.
 
 @group(2) @binding(4) var<storage, read_write> list_entries: array<vec2u>; // an element's index and its place's
 @group(2) @binding(5) var<storage, read_write> list_counts: array<atomic<u32>>; // of walls and caps, run by run
@@ -7,11 +7,10 @@
 const LIST_GROUP: u32 = 64u;
 // Rasterisers keep places in a pixel as whole numbers of 1/256 at least [pixels].
 const LIST_ROOM: f32 = 1.0 / 64.0;
-
-// The most texels a side that a piece in the shadow of others has.
-const LIST_TEXELS: f32 = 8.0;
-// How much nearer to the light these others are: of the map's depth range (sun), or of the distance (local lights).
-const LIST_APART: f32 = 1e-3;
+// Pixels a side of what is seen by few.
+const LIST_SMALL: i32 = 3;
+// Relative rounding of its depths.
+const LIST_DEPTH: f32 = 1e-5;
 
 @compute @workgroup_size(1)
 fn list_clear() {
@@ -26,8 +25,7 @@ fn list_walls(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_ind
         return;
     }
     let place = occluder_params.first_place + group.z;
-    let wall = occluder_wall_of(edge, place);
-    if !wall.is_inside && !list_is_shaded(wall.a, wall.b, wall.b) {
+    if !occluder_wall_of(edge, place).is_inside {
         let index = atomicAdd(&list_counts[occluder_params.counts], 1u);
         list_entries[occluder_params.walls + index] = vec2u(edge, place);
     }
@@ -41,67 +39,48 @@ fn list_caps(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
     }
     let place = occluder_params.first_place + group.z;
     let p = occluder_triangle(triangle, place);
-    if list_is_seen(p) && !list_is_shaded(p[0], p[1], p[2]) {
+    let seen = list_seen(p);
+    let spans = seen.pixels.zw - seen.pixels.xy;
+    if any(spans < vec2i(0)) {
+        return;
+    }
+    if any(spans >= vec2i(LIST_SMALL)) {
         let index = atomicAdd(&list_counts[occluder_params.counts + 1u], 1u);
         list_entries[occluder_params.caps + index] = vec2u(triangle, place);
+        return;
+    }
+    let facing = occluder_facing(occluder_cap_of(p));
+    for (var y = seen.pixels.y; y <= seen.pixels.w; y++) {
+        for (var x = seen.pixels.x; x <= seen.pixels.z; x++) {
+            write_depths(occluder_tile_of(vec2u(vec2i(x, y))), seen.depths, facing);
+        }
     }
 }
 
-// Whether a pixel's centre may lie in the triangle.
-fn list_is_seen(p: array<vec3f, 3>) -> bool {
-    var least = vec2f(1e30);
-    var most = vec2f(-1e30);
+// Where a triangle is on the screen: the first and the last pixel whose centres may lie in it, and between which depths [m].
+struct ListSeen {
+    pixels: vec4i,
+    depths: vec2f,
+}
+
+fn list_seen(p: array<vec3f, 3>) -> ListSeen {
+    var least = vec3f(1e30);
+    var most = vec3f(-1e30);
     var nearest = 1e30;
     for (var i = 0u; i < 3u; i++) {
         let on_screen = occluder_on_screen(vec4f(p[i], 1.0));
-        let pixel = on_screen.xy / on_screen.z;
-        least = min(least, pixel);
-        most = max(most, pixel);
+        let place = vec3f(on_screen.xy / on_screen.z, dot(frame.camera.forward, p[i]));
+        least = min(least, place);
+        most = max(most, place);
         nearest = min(nearest, on_screen.z);
     }
     // Through the eye's plane: anywhere.
     if !(nearest > 0.0) {
-        return true;
+        return ListSeen(vec4i(0, 0, vec2i(frame.camera.size)), vec2f(0.0));
     }
-    let room = LIST_ROOM + 1e-6 * max(abs(least), abs(most));
-    let first = ceil(max(least - room, vec2f(0.0)) - 0.5);
-    let last = floor(min(most + room, frame.camera.size) - 0.5);
-    return all(first <= last);
-}
-
-// Whether every texel of the shadow map on the points and about them holds something that is surely nearer to the light.
-// Pieces of many texels are not asked.
-fn list_is_shaded(a: vec3f, b: vec3f, c: vec3f) -> bool {
-    if SHADOW_KIND == SHADOW_NONE {
-        return false;
-    }
-    let p = list_on_map(a);
-    let q = list_on_map(b);
-    let r = list_on_map(c);
-    if p.face != q.face || p.face != r.face {
-        return false;
-    }
-    let size = vec2f(textureDimensions(shadow_map));
-    let first = floor(min(p.uv, min(q.uv, r.uv)) * size) - 1.0;
-    let last = floor(max(p.uv, max(q.uv, r.uv)) * size) + 1.0;
-    if !all(first >= vec2f(0.0)) || !all(last < size) || any(last - first >= vec2f(LIST_TEXELS)) {
-        return false;
-    }
-    let nearest = max(p.depth, max(q.depth, r.depth));
-    let apart = select(LIST_APART, LIST_APART * abs(nearest), light_is_local());
-    for (var y = i32(first.y); y <= i32(last.y); y++) {
-        for (var x = i32(first.x); x <= i32(last.x); x++) {
-            let held = textureLoad(shadow_map, vec2i(x, y), p.face, 0);
-            let depth = select(held, 1.0 - held, light.standard_depth == 1u);
-            if depth <= nearest + apart {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-fn list_on_map(point: vec3f) -> ShadowPoint {
-    let map_ray = shadow_ray(Ray(point, 0.0, vec3f(0.0)));
-    return shadow_point(map_ray.c0);
+    let room = LIST_ROOM + 1e-6 * max(abs(least.xy), abs(most.xy));
+    let first = ceil(max(least.xy - room, vec2f(0.0)) - 0.5);
+    let last = floor(min(most.xy + room, frame.camera.size) - 0.5);
+    let rounding = LIST_DEPTH * max(abs(least.z), abs(most.z));
+    return ListSeen(vec4i(vec2i(first), vec2i(last)), vec2f(least.z - rounding, most.z + rounding));
 }

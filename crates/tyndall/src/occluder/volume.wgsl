@@ -66,10 +66,18 @@ struct OccluderWall {
     is_inside: bool, // of the union of its triangles' volumes
 }
 
-fn occluder_wall_of(index: u32, place: u32) -> OccluderWall {
+fn occluder_edge(index: u32, place: u32) -> array<vec3f, 2> {
     let edge = 4u * index;
-    let a = occluder_corner(occluder_elements[edge], place);
-    let b = occluder_corner(occluder_elements[edge + 1u], place);
+    return array<vec3f, 2>(
+        occluder_corner(occluder_elements[edge], place),
+        occluder_corner(occluder_elements[edge + 1u], place),
+    );
+}
+
+fn occluder_wall_of(index: u32, place: u32) -> OccluderWall {
+    let edge = occluder_edge(index, place);
+    let a = edge[0];
+    let b = edge[1];
     let along = b - a;
     let way = occluder_way(a);
     let across = cross(along, way);
@@ -79,8 +87,8 @@ fn occluder_wall_of(index: u32, place: u32) -> OccluderWall {
     let slack = rounded * (length(along) + length(way)) / max(area, 1e-30);
     var plane = OccluderPlane(a, across / max(area, 1e-30), OCCLUDER_EITHER, slack);
     var is_inside = false;
-    let c = occluder_elements[edge + 2u];
-    let d = occluder_elements[edge + 3u];
+    let c = occluder_elements[4u * index + 2u];
+    let d = occluder_elements[4u * index + 3u];
     if c != OCCLUDER_NONE {
         let inside = occluder_side(plane, occluder_corner(c, place));
         var other = inside;
@@ -118,6 +126,16 @@ fn occluder_cap_of(p: array<vec3f, 3>) -> OccluderPlane {
         return OccluderPlane(p[0], normal * sign(inwards), OCCLUDER_ENTERS, slack);
     }
     return OccluderPlane(p[0], normal, OCCLUDER_EITHER, slack);
+}
+
+// What rays from the eye do that meet a piece: whether they may enter the shadow, and whether they may leave it.
+fn occluder_facing(plane: OccluderPlane) -> vec2<bool> {
+    let is_flat = camera_is_orthographic();
+    let towards = select(plane.anchor, frame.camera.forward, is_flat);
+    let slope = dot(plane.normal, towards);
+    let rounding = select(2.0 * OCCLUDER_ROUNDING, 0.0, is_flat);
+    let is_certain = plane.side == OCCLUDER_ENTERS && abs(slope) > (plane.slack + rounding) * length(towards);
+    return vec2<bool>(!is_certain || slope > 0.0, !is_certain || slope < 0.0);
 }
 
 fn occluder_triangle(index: u32, place: u32) -> array<vec3f, 3> {

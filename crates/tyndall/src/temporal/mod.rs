@@ -14,7 +14,7 @@
 //!   of a tile of 8 x 8 pixels is held against it in 16 slabs, and those that meet a change in 8 parts each. All is rounded outwards: **a kept pixel is bit by bit what
 //!   computing it again would give**, for any number of frames.
 //! - **geometry**: the thesis's own. Moving occluders ([`LightInputs::occluders`](crate::LightInputs)) and their shadow
-//!   volumes are drawn where they were in the frame before and where they are now. Pixels may be lost: those whose shadows
+//!   volumes are rasterised where they were in the frame before and where they are now, by tiles of 4 x 4 pixels. Pixels may be lost: those whose shadows
 //!   differ from frame to frame for another reason than a listed occluder's movement. Hence a full frame every
 //!   [`frames`](Reuse::frames) + 1 frames.
 //!
