@@ -11,6 +11,9 @@
 @group(2) @binding(7) var<storage, read> tiles_found: array<vec4u>; // see reproject.wgsl
 
 const TILES_SIDE: u32 = 8u;
+const TILES_LANES: u32 = 16u;
+// Pixels an invocation.
+const TILES_PIXELS: u32 = TILES_SIDE * TILES_SIDE / TILES_LANES;
 const TILES_SLABS: u32 = 16u;
 const TILES_PARTS: u32 = 8u;
 // While the camera rests, what is not exact is computed again within so many frames.
@@ -26,31 +29,26 @@ var<workgroup> tiles_near: atomic<u32>; // a bit a slab
 var<workgroup> tiles_touched: atomic<u32>;
 var<workgroup> tiles_stale: atomic<u32>;
 
-@compute @workgroup_size(8, 8)
-fn tiles(
-    @builtin(workgroup_id) tile: vec3u,
-    @builtin(local_invocation_id) local: vec3u,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let pixel = TILES_SIDE * tile.xy + local.xy;
-    let is_inside = all(pixel < reuse.pixels);
-    let place = pixel.y * reuse.pixels.x + pixel.x;
-    var is_stale = false;
-    var memory = 0u;
-    if is_inside {
-        memory = tiles_memory(tile.xy, place);
-        let depth = textureLoad(frame_depth, pixel, 0);
-        atomicMax(&tiles_farthest, bitcast<u32>(max(camera_view_depth(depth), 0.0)));
-        is_stale = tiles_pixel_changed(pixel, place, depth) || memory == REUSE_LOST;
+@compute @workgroup_size(16)
+fn tiles(@builtin(workgroup_id) tile: vec3u, @builtin(local_invocation_index) lane: u32) {
+    var stale = 0u; // a bit a pixel of this invocation's
+    var deepest = 0.0;
+    for (var i = 0u; i < TILES_PIXELS; i++) {
+        let pixel = tiles_pixel(tile.xy, lane, i);
+        if all(pixel < reuse.pixels) {
+            let place = pixel.y * reuse.pixels.x + pixel.x;
+            let depth = textureLoad(frame_depth, pixel, 0);
+            deepest = max(deepest, camera_view_depth(depth));
+            let is_stale = tiles_pixel_changed(pixel, place, depth) || tiles_memory(tile.xy, place) == REUSE_LOST;
+            stale |= u32(is_stale) << i;
+        }
     }
+    atomicMax(&tiles_farthest, bitcast<u32>(deepest));
     workgroupBarrier();
-    if is_inside {
-        tiles_remember(pixel);
-    }
     let corner = vec2f(TILES_SIDE * tile.xy);
     let farthest = bitcast<f32>(atomicLoad(&tiles_farthest));
     let slabs = select(0u, TILES_SLABS, reuse.mask == REUSE_CHANGE);
-    for (var i = lane; i < slabs; i += TILES_SIDE * TILES_SIDE) {
+    for (var i = lane; i < slabs; i += TILES_LANES) {
         if tiles_slab_changed(corner, farthest * vec2f(f32(i), f32(i + 1u)) / f32(TILES_SLABS)) {
             atomicOr(&tiles_near, 1u << i);
         }
@@ -59,28 +57,46 @@ fn tiles(
     // Once a part meets a change, the whole tile is stale.
     let near = atomicLoad(&tiles_near);
     let parts = TILES_PARTS * countOneBits(near);
-    for (var i = lane; i < parts; i += TILES_SIDE * TILES_SIDE) {
+    for (var i = lane; i < parts; i += TILES_LANES) {
         let first = f32(TILES_PARTS * tiles_bit(near, i / TILES_PARTS) + i % TILES_PARTS);
         if tiles_slab_changed(corner, farthest * vec2f(first, first + 1.0) / f32(TILES_PARTS * TILES_SLABS)) {
             atomicStore(&tiles_touched, 1u);
         }
     }
     workgroupBarrier();
-    let is_computed = tiles_state.mode < REUSE_MASKED || is_stale || atomicLoad(&tiles_touched) != 0u;
-    if is_inside {
-        let age = min((memory & REUSE_AGE) + 1u, REUSE_AGE);
-        tiles_age[place] = select((memory & REUSE_ERROR) | age, 0u, is_computed);
-        if is_computed {
-            atomicAdd(&tiles_stale, 1u);
+    var computed = 0u;
+    let is_whole = tiles_state.mode < REUSE_MASKED || atomicLoad(&tiles_touched) != 0u;
+    for (var i = 0u; i < TILES_PIXELS; i++) {
+        let pixel = tiles_pixel(tile.xy, lane, i);
+        if all(pixel < reuse.pixels) {
+            let is_computed = is_whole || ((stale >> i) & 1u) == 1u;
+            tiles_settle(tile.xy, pixel, is_computed);
+            computed += u32(is_computed);
         }
     }
+    atomicAdd(&tiles_stale, computed);
     workgroupBarrier();
     if lane == 0u && tiles_state.mode >= REUSE_MASKED {
-        let stale = atomicLoad(&tiles_stale);
-        if stale > 0u {
-            atomicAdd(&tiles_state.stale, stale);
+        let stale_in_all = atomicLoad(&tiles_stale);
+        if stale_in_all > 0u {
+            atomicAdd(&tiles_state.stale, stale_in_all);
         }
     }
+}
+
+// An invocation's pixels, two rows of the tile apart.
+fn tiles_pixel(tile: vec2u, lane: u32, i: u32) -> vec2u {
+    let index = TILES_LANES * i + lane;
+    return TILES_SIDE * tile + vec2u(index % TILES_SIDE, index / TILES_SIDE);
+}
+
+// Leaves how old a pixel is, and what it was computed from.
+fn tiles_settle(tile: vec2u, pixel: vec2u, is_computed: bool) {
+    let place = pixel.y * reuse.pixels.x + pixel.x;
+    let memory = tiles_memory(tile, place);
+    let age = min((memory & REUSE_AGE) + 1u, REUSE_AGE);
+    tiles_age[place] = select((memory & REUSE_ERROR) | age, 0u, is_computed);
+    tiles_remember(pixel);
 }
 
 // The place of a number's bit `index`, of those that are set.
