@@ -6,6 +6,9 @@ const MEDIUM_PHASE_ISOTROPIC: u32 = 0u;
 const MEDIUM_PHASE_RAYLEIGH: u32 = 1u;
 const MEDIUM_PHASE_HG: u32 = 2u;
 
+// How many components the sums are unrolled for that pipelines unroll; those that a medium has not scatter nothing.
+override MEDIUM_COMPONENTS: u32 = MEDIUM_MAX_COMPONENTS;
+
 struct MediumComponent {
     sigma_s: vec3f, // [1/m]
     phase: u32,
@@ -19,7 +22,7 @@ struct Medium {
 }
 
 fn medium_phase(component: MediumComponent, cos_theta: f32) -> f32 {
-    switch component.phase {
+    switch frame_choice(component.phase) {
         case MEDIUM_PHASE_RAYLEIGH: { return phase_rayleigh(cos_theta); }
         case MEDIUM_PHASE_HG: { return phase_hg(component.g, cos_theta); }
         default: { return phase_isotropic(); }
@@ -31,6 +34,16 @@ fn medium_scattering(cos_theta: f32) -> vec3f {
     var sum = vec3f(0.0);
     let count = frame_choice(frame.medium.count);
     for (var i = 0u; i < count; i++) {
+        let component = frame.medium.components[i];
+        sum += component.sigma_s * medium_phase(component, cos_theta);
+    }
+    return sum;
+}
+
+// The same, unrolled, for inner loops: what is known to be the same for all threads is read once for all of them.
+fn medium_scattering_unrolled(cos_theta: f32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < MEDIUM_COMPONENTS; i++) {
         let component = frame.medium.components[i];
         sum += component.sigma_s * medium_phase(component, cos_theta);
     }
