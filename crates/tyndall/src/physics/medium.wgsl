@@ -6,7 +6,7 @@ const MEDIUM_PHASE_ISOTROPIC: u32 = 0u;
 const MEDIUM_PHASE_RAYLEIGH: u32 = 1u;
 const MEDIUM_PHASE_HG: u32 = 2u;
 
-// How many components the sums are unrolled for that pipelines unroll; those that a medium has not scatter nothing.
+// How many components sums are unrolled for; those that a medium does not have scatter nothing.
 override MEDIUM_COMPONENTS: u32 = MEDIUM_MAX_COMPONENTS;
 
 struct MediumComponent {
@@ -22,7 +22,7 @@ struct Medium {
 }
 
 fn medium_phase(component: MediumComponent, cos_theta: f32) -> f32 {
-    switch frame_choice(component.phase) {
+    switch component.phase {
         case MEDIUM_PHASE_RAYLEIGH: { return phase_rayleigh(cos_theta); }
         case MEDIUM_PHASE_HG: { return phase_hg(component.g, cos_theta); }
         default: { return phase_isotropic(); }
@@ -40,11 +40,12 @@ fn medium_scattering(cos_theta: f32) -> vec3f {
     return sum;
 }
 
-// The same, unrolled, for inner loops: what is known to be the same for all threads is read once for all of them.
+// The same, unrolled, for inner loops: of a component at a known place drivers know that all threads read the same.
 fn medium_scattering_unrolled(cos_theta: f32) -> vec3f {
     var sum = vec3f(0.0);
     for (var i = 0u; i < MEDIUM_COMPONENTS; i++) {
-        let component = frame.medium.components[i];
+        var component = frame.medium.components[i];
+        component.phase = frame_choice(component.phase);
         sum += component.sigma_s * medium_phase(component, cos_theta);
     }
     return sum;
