@@ -85,7 +85,7 @@
 //! voxels are many, a thread scans one by itself and reads it once.
 //!
 //! 256 grids of 128^3 voxels are 64 MiB, four times one grid of 512^3, and their light rays sixteen times as many. A frame,
-//! gathered interleaved, takes 3.9 times one of a lamp with `vsv` at 512^3.
+//! gathered interleaved, takes 3.5 times one of a lamp with `vsv` at 512^3.
 //!
 //! # What was tried
 //!
