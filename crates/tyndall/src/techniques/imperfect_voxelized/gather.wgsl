@@ -10,8 +10,8 @@ const IVSV_PANELS: u32 = 8u;
 // A thread takes two pixels with the same samples, so that what it reads of each serves both.
 @compute @workgroup_size(8, 8)
 fn ivsv_gather(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
-    let place = ivsv_place(group.xy, vec2u(8u, 16u), local.xy);
-    let below = place + vec2u(0u, 8u * ivsv.spread);
+    let place = ivsv_place(group.xy, vec2u(8u, 16u), local.xy * vec2u(1u, 2u));
+    let below = place + vec2u(0u, ivsv.spread);
     if any(place >= ivsv.size) {
         return;
     }
