@@ -110,7 +110,7 @@ pub(super) const HAIRBALL: Subject = subject(
 pub(super) const ANGEL_RECT: Subject =
     subject("angel", asset!("angel.glb", "angel-rect"), "builtin:slats");
 pub(super) const CITY_RECT: Subject =
-    subject("city", asset!("city.glb", "city-rect"), "builtin:church");
+    subject("city", asset!("city.glb", "city-rect"), "builtin:city");
 
 /// The picture that SIBENIKTEX's light shines through, among the assets.
 const PICTURE: &str = "rose-window.png";

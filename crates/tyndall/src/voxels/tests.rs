@@ -4,7 +4,7 @@ use tyndall_testkit::{device::device_or_skip, samples::in_box, wgsl};
 use wgpu::util::DeviceExt;
 
 use super::{
-    gpu::{RUNS, SCAN, VOXELS},
+    gpu::{RUNS, SCAN, VOXELS, scan_columns, scan_groups},
     twin::{self, Grid},
 };
 
@@ -21,7 +21,8 @@ fn scan_is_the_or_of_all_before() {
     let Some(gpu) = device_or_skip("scan.wgsl") else {
         return;
     };
-    for (side, grids) in [(64_usize, 3), (128, 2), (160, 1), (256, 1)] {
+    let sizes = [(64_usize, 3), (128, 2), (160, 1), (256, 1)];
+    for ((side, grids), parts) in sizes.iter().flat_map(|size| [(*size, 1), (*size, 16)]) {
         let given = words(side as u64, grids * side.pow(3) / 32);
         let buffer = |contents: &[u8], usage| {
             let usage = usage | wgpu::BufferUsages::COPY_SRC;
@@ -32,19 +33,19 @@ fn scan_is_the_or_of_all_before() {
             };
             gpu.device.create_buffer_init(&init)
         };
+        let columns = scan_columns(side as u32, grids as u32);
         let uniform = buffer(
-            bytemuck::bytes_of(&[side as u32, 0, 0, 0]),
+            bytemuck::bytes_of(&[side as u32, columns, 0, 0]),
             wgpu::BufferUsages::UNIFORM,
         );
         let voxels = buffer(bytemuck::cast_slice(&given), wgpu::BufferUsages::STORAGE);
-        let groups = [side as u32, grids as u32, (side as u32 / 32).div_ceil(4)];
         wgsl::dispatch(
             gpu,
             &[SCAN],
             "voxel_scan_rows",
-            &[],
+            &[("VOXEL_SCAN_PARTS", parts.into())],
             (2, &[&uniform, &voxels]),
-            groups,
+            scan_groups(columns, parts),
         )
         .expect("the shader runs");
         let found: Vec<u32> = gpu.read_buffer(&voxels).expect("readable");
@@ -59,7 +60,7 @@ fn scan_is_the_or_of_all_before() {
                 .zip(&expected.is_dark)
                 .filter(|(a, b)| a != b)
                 .count();
-            assert!(expected.is_dark == found.is_dark, "{side}");
+            assert!(expected.is_dark == found.is_dark, "{side} {parts}");
         }
         assert!(changed > side * side, "the scan has something to do");
     }

@@ -28,8 +28,10 @@ const COLORS: &str = include_str!("colors.wgsl");
 pub(super) const SPLAT: &str = include_str!("splat.wgsl");
 pub(super) const PULL_PUSH: &str = include_str!("pull_push.wgsl");
 
-/// Points, or samples, that a workgroup takes.
+/// Samples that a workgroup takes.
 const THREADS: u32 = 64;
+/// Points that a workgroup takes.
+const POINTS: u32 = 512;
 /// Texels a side that a workgroup of `pull_push.wgsl` takes.
 const BLOCK: u32 = 32;
 /// From a sample's map to the next one's turn about the normal, in turns.
@@ -283,7 +285,7 @@ impl Programs {
             cloud.as_entire_binding(),
             buffers.maps.as_entire_binding(),
         ];
-        let groups = [batch.points.div_ceil(THREADS), batch.count, 1];
+        let groups = [batch.points.div_ceil(POINTS), batch.count, 1];
         let splat = scope.dispatch(&self.splat, &resources, groups);
         let resources = [
             buffers.batches.binding(index),

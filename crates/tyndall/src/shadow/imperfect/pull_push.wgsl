@@ -27,6 +27,8 @@ fn pull_texel(block: vec3u, k: u32) -> vec2u {
 fn pull_push(@builtin(global_invocation_id) block: vec3u) {
     let side = imperfect_batch.side;
     let map = block.z * side * side;
+    // Loops are unrolled: these stay in registers.
+    var texels: array<vec4f, 4>;
     var twos = vec4f(1e30);
     for (var quad = 0u; quad < 4u; quad++) {
         var cells = vec4f(1e30);
@@ -37,15 +39,17 @@ fn pull_push(@builtin(global_invocation_id) block: vec3u) {
                 cells[i] = select(bitcast<f32>(stored), 1e30, stored == IMPERFECT_NOTHING);
             }
         }
+        texels[quad] = cells;
         twos[quad] = pull_mean(cells);
     }
     let four = pull_mean(twos);
-    for (var k = 0u; k < 16u; k++) {
-        let texel = pull_texel(block, k);
-        let pushed = select(twos[k >> 2u], four, twos[k >> 2u] >= 1e30);
-        let index = map + texel.y * side + texel.x;
-        if all(texel < vec2u(side)) && pushed < 1e30 && imperfect_maps[index] == IMPERFECT_NOTHING {
-            imperfect_maps[index] = bitcast<u32>(pushed);
+    for (var quad = 0u; quad < 4u; quad++) {
+        let pushed = select(twos[quad], four, twos[quad] >= 1e30);
+        for (var i = 0u; i < 4u; i++) {
+            let texel = pull_texel(block, 4u * quad + i);
+            if all(texel < vec2u(side)) && pushed < 1e30 && texels[quad][i] >= 1e30 {
+                imperfect_maps[map + texel.y * side + texel.x] = bitcast<u32>(pushed);
+            }
         }
     }
 }

@@ -130,7 +130,7 @@ fn splats_are_those_of_single_points() {
         "imperfect_splat",
         &[],
         (2, &bound),
-        [7, samples, 1],
+        [2, samples, 1],
     )
     .expect("the shader runs");
     let found: Vec<u32> = gpu.read_buffer(&buffers[3]).expect("readable");

@@ -7,23 +7,37 @@ const IVSV_UNIFORM: u32 = 1u;
 // A grid's columns are integrated over in so many panels.
 const IVSV_PANELS: u32 = 8u;
 
+// A thread takes two pixels with the same samples, so that what it reads of each serves both.
 @compute @workgroup_size(8, 8)
-fn ivsv_gather(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= ivsv.size) {
+fn ivsv_gather(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let place = ivsv_place(group.xy, vec2u(8u, 16u), local.xy * vec2u(1u, 2u));
+    let below = place + vec2u(0u, ivsv.spread);
+    if any(place >= ivsv.size) {
         return;
     }
-    let ray = ivsv_ray(id.xy);
-    let span = light_reach(ray);
-    var sum = vec3f(0.0);
+    let rays = array(ivsv_ray(place), ivsv_ray(min(below, ivsv.size - 1u)));
+    let spans = array(light_reach(rays[0]), light_reach(rays[1]));
+    var sums = array(vec3f(0.0), vec3f(0.0));
     var count = 0.0;
     let turns = ivsv.turns;
-    for (var i = ivsv_first(id.xy, turns); i < imperfect_batch.count; i += turns) {
-        sum += ivsv_sample(ray, span, i);
+    for (var i = ivsv_first(place, turns); i < imperfect_batch.count; i += turns) {
+        let e = grids[imperfect_batch.first + i];
+        let color = imperfect_colors[imperfect_batch.first + i].rgb;
+        sums[0] += color * ivsv_sample(e, rays[0], spans[0], i);
+        sums[1] += color * ivsv_sample(e, rays[1], spans[1], i);
         count += 1.0;
     }
-    let index = id.y * ivsv.size.x + id.x;
+    ivsv_add(place, vec4f(sums[0], count));
+    if below.y < ivsv.size.y {
+        ivsv_add(below, vec4f(sums[1], count));
+    }
+}
+
+// To what batches before this one left in a pixel.
+fn ivsv_add(place: vec2u, light: vec4f) {
+    let index = place.y * ivsv.size.x + place.x;
     let before = select(vec4f(0.0), ivsv_sums[index], imperfect_batch.first > 0u);
-    ivsv_sums[index] = before + vec4f(sum, count);
+    ivsv_sums[index] = before + light;
 }
 
 // A sample seen from a view ray.
@@ -47,12 +61,11 @@ fn ivsv_density(view: IvsvView, xi: f32) -> vec3f {
     let direction = vec2f(cos(xi), sin(xi));
     let path = view.nearest + view.height * direction.x / max(1.0 - direction.y, 1e-7);
     let emitted = max(dot(view.emitted, direction), 0.0);
-    return emitted * medium_scattering(-direction.y) * transmittance(frame.medium.sigma_t, path);
+    return emitted * medium_scattering_unrolled(-direction.y) * transmittance(frame.medium.sigma_t, path);
 }
 
-// The light of one sample of the batch.
-fn ivsv_sample(ray: Ray, span: vec2f, tile: u32) -> vec3f {
-    let e = grids[imperfect_batch.first + tile];
+// The light of one sample of the batch, over its intensity.
+fn ivsv_sample(e: Epipolar, ray: Ray, span: vec2f, tile: u32) -> vec3f {
     let view = ivsv_view(ray, e.position);
     let place = epipolar_ray(e, ray);
     // Near the axis distances are compared, see below.
@@ -97,7 +110,7 @@ fn ivsv_sample(ray: Ray, span: vec2f, tile: u32) -> vec3f {
     let evenly = all * (1.0 - dark.x / max(dark.y, 1e-20));
     let seen = select(bright, evenly, ivsv.weighting == IVSV_UNIFORM);
     let reached = select(0.0, step / view.height, span.x < span.y && lit.x < lit.y);
-    return imperfect_colors[imperfect_batch.first + tile].rgb * seen * reached;
+    return seen * reached;
 }
 
 // Along the axis all light rays are one to either side of the sample: what lies between it and the ray's ends, as

@@ -15,6 +15,7 @@ use crate::{
         grid::{EpipolarGrid, GridScene},
     },
     error::PrepareError,
+    frame::Medium,
     gpu::{
         fill::Fill,
         layout,
@@ -34,9 +35,9 @@ pub(super) const FILTER: &str = include_str!("filter.wgsl");
 const RESOLVE: &str = include_str!("resolve.wgsl");
 
 /// Light rays that a workgroup of `rectify.wgsl` takes.
-const RAYS_A_WORKGROUP: u32 = 512;
-/// Pixels a side that a workgroup of `gather.wgsl` and `surface.wgsl` takes.
-pub(super) const TILE: u32 = 8;
+const RAYS_A_WORKGROUP: u32 = 64 * 32;
+/// Pixels that a workgroup of `gather.wgsl` takes.
+const TILE: [u32; 2] = [8, 16];
 
 /// `IvsvParams` of `params.wgsl`.
 #[repr(C)]
@@ -47,15 +48,16 @@ pub(super) struct ParamsUniform {
     turns: u32,
     weighting: u32,
     taps: u32,
-    pad: [u32; 2],
+    spread: u32,
+    pad: u32,
 }
 
 impl ParamsUniform {
     fn new(params: &Params, size: [u32; 2]) -> Self {
-        let (pitch, turns, taps) = match params.gather {
-            Gather::Full => (1, 1, 1),
-            Gather::Interleaved => (1, 9, 9),
-            Gather::Quarter => (2, 1, 4),
+        let (pitch, turns, taps, spread) = match params.gather {
+            Gather::Full => (1, 1, 1, 1),
+            Gather::Interleaved => (1, 9, 9, 3),
+            Gather::Quarter => (2, 1, 4, 1),
         };
         Self {
             size: size.map(|n| n.div_ceil(pitch)),
@@ -63,8 +65,18 @@ impl ParamsUniform {
             turns,
             weighting: params.weighting as u32,
             taps,
-            pad: [0; 2],
+            spread,
+            pad: 0,
         }
+    }
+
+    /// Workgroups that take so many pixels each, see `ivsv_place` of `params.wgsl`.
+    pub(super) fn groups(&self, tile: [u32; 2]) -> [u32; 3] {
+        let along = |axis: usize| {
+            let tiles = self.size[axis].div_ceil(self.spread * tile[axis]);
+            self.spread * tiles
+        };
+        [along(0), along(1), 1]
     }
 
     pub(super) fn pixels(&self) -> u64 {
@@ -78,7 +90,8 @@ pub(crate) struct Programs {
     fill: Fill,
     scan: Scan,
     rectify: ComputeProgram,
-    gather: ComputeProgram,
+    /// By the number of the medium's components, made when they are first asked for.
+    gather: [OnceLock<ComputeProgram>; Medium::MAX_COMPONENTS + 1],
     resolve: ScreenProgram,
     /// Made when they are first asked for.
     surface: OnceLock<surface::Programs>,
@@ -94,9 +107,6 @@ impl Programs {
         let own = [batch, read(1), read(2), read(3), layout::storage(4, false)];
         let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, RECTIFY];
         let rectify = compute("rectify", &modules, "rectify", &own);
-        let own = batch_entries(&[layout::storage(7, false)]);
-        let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, SAMPLES, GATHER];
-        let gather = compute("gather", &modules, "ivsv_gather", &own);
         let own = [batch, layout::uniform::<ParamsUniform>(1), read(2)];
         let modules = [IMPERFECT, PARAMS, FILTER, RESOLVE];
         Self {
@@ -104,10 +114,21 @@ impl Programs {
             fill: Fill::new(device, shared),
             scan: Scan::new(device, shared),
             rectify,
-            gather,
+            gather: Default::default(),
             resolve: ScreenProgram::new(device, shared, "resolve", &modules, "ivsv_resolve", &own),
             surface: OnceLock::new(),
         }
+    }
+
+    fn gather(&self, device: &wgpu::Device, shared: &Shared, components: usize) -> &ComputeProgram {
+        let components = components.min(Medium::MAX_COMPONENTS);
+        let make = || {
+            let own = batch_entries(&[layout::storage(7, false)]);
+            let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, SAMPLES, GATHER];
+            ComputeProgram::new(device, shared, "gather", &modules, "ivsv_gather", &own)
+                .with("MEDIUM_COMPONENTS", components as f64)
+        };
+        self.gather[components].get_or_init(make)
     }
 }
 
@@ -245,8 +266,9 @@ fn gather(
     picture: &ParamsUniform,
 ) -> Pass {
     let resources = buffers.of_batch(index, [buffers.sums.as_entire_binding()]);
-    let [x, y] = picture.size.map(|n| n.div_ceil(TILE));
-    scope.compute(&programs.gather, "gather", &resources, [x, y, 1])
+    let components = scope.frame.medium.components.len();
+    let program = programs.gather(scope.device, scope.shared, components);
+    scope.compute(program, "gather", &resources, picture.groups(TILE))
 }
 
 /// The samples' epipolar grids.

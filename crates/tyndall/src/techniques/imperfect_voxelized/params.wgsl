@@ -6,6 +6,13 @@ struct IvsvParams {
     turns: u32, // 1, or 9: of so many pixels each takes other samples
     weighting: u32,
     taps: u32, // pixels of it that one of the output is made of
+    spread: u32, // pixels from one of a workgroup to the next: all of them take the same samples
+}
+
+// The pixel of a thread, of workgroups that take tiles of so many pixels each.
+fn ivsv_place(group: vec2u, tile: vec2u, local: vec2u) -> vec2u {
+    let spread = ivsv.spread;
+    return group / spread * (spread * tile) + group % spread + spread * local;
 }
 
 // The output's pixel that one of the gathered picture stands for.

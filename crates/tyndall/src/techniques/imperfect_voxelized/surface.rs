@@ -1,6 +1,6 @@
 //! Shadows on surfaces, from the same voxels: what each pixel's surface gets of each sample, batch by batch.
 
-use super::gpu::{Buffers, FILTER, PARAMS, ParamsUniform, SAMPLES, TILE, batch_entries};
+use super::gpu::{Buffers, FILTER, PARAMS, ParamsUniform, SAMPLES, batch_entries};
 use crate::{
     effect::SurfaceShadows,
     epipolar::gpu::EPIPOLAR,
@@ -14,6 +14,8 @@ use crate::{
     voxels::gpu::VOXELS,
 };
 
+/// Pixels that a workgroup of `surface.wgsl` takes.
+const TILE: [u32; 2] = [8; 2];
 const SURFACE: &str = include_str!("surface.wgsl");
 const RESOLVE: &str = include_str!("surface_resolve.wgsl");
 
@@ -98,8 +100,8 @@ impl Sums {
             self.all.as_entire_binding(),
         ];
         let resources = buffers.of_batch(index, own);
-        let [x, y] = picture.size.map(|n| n.div_ceil(TILE));
-        scope.compute(&programs.add, "light surfaces", &resources, [x, y, 1])
+        let groups = picture.groups(TILE);
+        scope.compute(&programs.add, "light surfaces", &resources, groups)
     }
 
     /// Writes the picture that the view hands out.

@@ -15,22 +15,23 @@ const IVSV_TEXELS: f32 = 1.0;
 const IVSV_STEEPEST: f32 = 2.0;
 
 @compute @workgroup_size(8, 8)
-fn ivsv_surface(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= ivsv.size) {
+fn ivsv_surface(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let place = ivsv_place(group.xy, vec2u(8u), local.xy);
+    if any(place >= ivsv.size) {
         return;
     }
-    let ray = ivsv_ray(id.xy);
-    let known = min(ivsv_pixel(id.xy), textureDimensions(ivsv_normals) - 1u);
+    let ray = ivsv_ray(place);
+    let known = min(ivsv_pixel(place), textureDimensions(ivsv_normals) - 1u);
     let normal = textureLoad(ivsv_normals, known, 0).xyz;
     var lit = vec3f(0.0);
     var all = vec3f(0.0);
     let turns = ivsv.turns;
-    for (var i = ivsv_first(id.xy, turns); i < imperfect_batch.count; i += turns) {
+    for (var i = ivsv_first(place, turns); i < imperfect_batch.count; i += turns) {
         let arriving = ivsv_arriving(ray, normal, i);
         all += arriving;
         lit += arriving * ivsv_visibility(ray, normal, i);
     }
-    let index = id.y * ivsv.size.x + id.x;
+    let index = place.y * ivsv.size.x + place.x;
     let is_first = imperfect_batch.first == 0u;
     ivsv_lit[index] = vec4f(lit, 0.0) + select(ivsv_lit[index], vec4f(0.0), is_first);
     ivsv_all[index] = vec4f(all, 0.0) + select(ivsv_all[index], vec4f(0.0), is_first);
