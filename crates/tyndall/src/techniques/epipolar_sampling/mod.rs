@@ -17,8 +17,11 @@
 //!   takes out the dependence on depth, the peak beside a local light and a spot's cone, too. Light that nothing blocks is
 //!   exact. Relative error on 1280 x 960 pixels of terrain: 5e-4.
 //! - In its slice a ray is a straight line over columns of the shadow map, in the coordinates (t, z) that perspective keeps
-//!   straight; one that crosses a column's depth is lit in part. So rays near the epipole, that cross few columns, need no
-//!   other treatment. A cube map is resampled on the fly to two charts of 90 degrees a slice.
+//!   straight; one that crosses a texel's depth is lit in part. So rays near the epipole, that cross few columns, need no
+//!   other treatment. Of a column both texels count that the slice's trace crosses, as far as it does: with one texel a
+//!   column shadows end up to half a texel beside their place, and a church's error does not fall below 0.022 however fine
+//!   the slices are (0.0024 with both). A cube map is resampled on the fly to two charts of 90 degrees a slice, half a
+//!   column a texel.
 //! - Nodes are compared with the same numbers as columns, and lit columns that adjoin make one stretch, integrated in closed
 //!   form: with trees and without (`tree`) results are equal bit by bit.
 //! - Slices are spread over the part of the border that lines end on, not all of it; lines begin a twentieth of a pixel
@@ -33,7 +36,7 @@
 //! - Samples integrated by the trees of technique `min-max`, over the rectified shadow map, in place of algorithm 2, which
 //!   Chen et al. suggest. The trees cost more than they save: terrain with a 4096^2 map 260 ms for trees and marching, a
 //!   church 590, against 66 and 142; with a 1024^2 map 65 and 130, against 24 and 48. Errors are those of interpolation
-//!   either way: church 0.0227 against 0.0242, through a rose window 0.0535 against 0.0543.
+//!   either way: church 0.0227, through a rose window 0.0535 against 0.0540.
 //! - Values and depths of samples in one picture in place of two buffers: unwarping takes half as long.
 //!
 //! On terrain brute force is as good with 200 steps, nine times the time; with finer slices 336 steps, ten times
@@ -45,7 +48,9 @@
 //! goes into the stages over pixels.
 //!
 //! Where it fails: shadows finer than the slices are apart are blurred across them, and ends of shafts between two marched
-//! samples are blurred along them. Pictures of thin leaves have a depth break at most samples: all are marched.
+//! samples are blurred along them: breaks are looked for in depths, not in shadows. It shows where little else is seen, as
+//! from below a ground whose shadow map lets light through between its texels. Pictures of thin leaves have a depth break at
+//! most samples: all are marched.
 
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
