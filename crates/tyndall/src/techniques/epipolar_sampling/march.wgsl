@@ -4,8 +4,9 @@
 // of its texels are, by the same comparisons of the same numbers, and adjoining lit texels make one stretch: with the tree
 // and without it the stretches are the same.
 
-@group(2) @binding(7) var<storage, read> march_traces: array<Trace>;
-@group(2) @binding(8) var<storage, read> march_nodes: array<vec2f>;
+@group(2) @binding(1) var<storage, read> march_traces: array<Trace>;
+@group(2) @binding(2) var<storage, read> march_nodes: array<vec2f>;
+@group(2) @binding(3) var airlight_table: texture_2d_array<f32>;
 
 // Where something tints the light, a ray is cut into this many steps at least.
 const MARCH_TINTED_STEPS: f32 = 256.0;
