@@ -56,8 +56,14 @@ fn it_agrees_with_marching_for_every_light_and_camera() {
         let found = on::on_gpu(gpu, effect, &stage, ours.clone());
         let marched = on::on_gpu(gpu, effect, &stage, technique("ray-march", &[steps(1024)]));
         let error = compare(&found, &marched).expect("same size");
-        // Largest measured on lavapipe: 0.0251, of a spot.
-        assert!(error.rel_mae < 0.035, "{}: {error:?}", stage.name);
+        // Largest measured on lavapipe: 0.0160 of a cube map, whose texels are not those of its charts; else 0.0067, of a
+        // sun through a picture. With one texel a column, not the two that a slice's trace may cross: 0.0251, of a spot.
+        let bound = if stage.name.starts_with("lamp") {
+            0.022
+        } else {
+            0.01
+        };
+        assert!(error.rel_mae < bound, "{}: {error:?}", stage.name);
     }
 }
 
@@ -191,7 +197,8 @@ fn shadows_are_there_wherever_the_epipole_is() {
         }
     }
     println!("shadows: {worst:?}");
-    assert!(worst.0 < 0.25, "{worst:?}");
+    // Measured on lavapipe: 0.100, of a lamp.
+    assert!(worst.0 < 0.14, "{worst:?}");
 }
 
 /// Smaller pictures in between and the other criterion: the light of marching, less exactly.
@@ -202,11 +209,11 @@ fn coarser_pictures_and_the_other_criterion_show_the_same_light() {
     };
     let effect = effect(gpu);
     let march = technique("ray-march", &[steps(256)]);
-    // Largest measured on lavapipe: 0.060, 0.090 and 0.046, of suns.
+    // Largest measured on lavapipe: 0.041, 0.073 and 0.012, of suns.
     let settings = [
-        (whole("downscale", 2), 0.08),
-        (whole("downscale", 4), 0.12),
-        (word("criterion", "in-scatter"), 0.06),
+        (whole("downscale", 2), 0.06),
+        (whole("downscale", 4), 0.1),
+        (word("criterion", "in-scatter"), 0.02),
     ];
     for (setting, bound) in settings {
         let ours = epipolar(&[whole("slices", 192), whole("samples", 64), setting.clone()]);

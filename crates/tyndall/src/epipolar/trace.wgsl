@@ -88,26 +88,48 @@ fn trace_side(trace: Trace) -> u32 {
     return select(size.x, size.y, trace.major == 1u);
 }
 
-// The depth of a column's occluder: its points are lit iff theirs is not less.
-fn trace_depth(trace: Trace, chart: u32, axis: vec3f, column: u32) -> f32 {
-    let size = vec2f(textureDimensions(shadow_map));
-    let middle = f32(column) + 0.5;
+// A column as the trace crosses it: through two texels at most, that meet at t = `split`; where there is but one, at the
+// column's end. Points are lit iff their depth is not less than that of their texel's occluder.
+struct TraceColumn {
+    split: f32,
+    depths: vec2f,
+}
+
+fn trace_column(trace: Trace, chart: u32, axis: vec3f, column: u32) -> TraceColumn {
+    let start = f32(column);
     if SHADOW_KIND == SHADOW_CUBE {
-        let sector = trace_sector(trace, chart, axis);
-        let direction = sector[1] + (2.0 * middle / size.x - 1.0) * sector[0];
-        let place = shadow_cube_point(direction);
-        let texel = vec2u(clamp(place.uv * size, vec2f(0.0), size - 1.0));
-        let stored = trace_stored(texel, place.face);
-        let along = max(abs(direction.x), max(abs(direction.y), abs(direction.z)));
-        return select(along * (stored - light.cube_depth.y) / light.cube_depth.x, TRACE_OPEN, stored <= 0.0);
+        // A chart's columns are not those of the map: each half is of the texel at its middle.
+        let first = trace_cube_depth(trace, chart, axis, start + 0.25);
+        return TraceColumn(start + 0.5, vec2f(first, trace_cube_depth(trace, chart, axis, start + 0.75)));
     }
-    let minor = trace.line.x + trace.line.y * middle;
-    let texel = select(vec2f(middle, minor), vec2f(minor, middle), trace.major == 1u);
-    if any(texel < vec2f(0.0)) || any(texel >= size) {
+    let minor = trace.line.x + trace.line.y * vec2f(start, start + 1.0);
+    let rows = floor(minor);
+    let edge = max(rows.x, rows.y);
+    let slope = select(trace.line.y, 1e-20, abs(trace.line.y) < 1e-20);
+    let crossing = clamp((edge - trace.line.x) / slope, start, start + 1.0);
+    let split = select(start + 1.0, crossing, rows.x != rows.y);
+    return TraceColumn(split, vec2f(trace_single_depth(trace, start, rows.x), trace_single_depth(trace, start, rows.y)));
+}
+
+fn trace_single_depth(trace: Trace, column: f32, row: f32) -> f32 {
+    let texel = select(vec2f(column, row), vec2f(row, column), trace.major == 1u);
+    if any(texel < vec2f(0.0)) || any(texel >= vec2f(textureDimensions(shadow_map))) {
         return TRACE_OPEN;
     }
     let stored = trace_stored(vec2u(texel), 0u);
     return select(stored, TRACE_OPEN, stored <= 0.0);
+}
+
+// At t of a cube's chart.
+fn trace_cube_depth(trace: Trace, chart: u32, axis: vec3f, t: f32) -> f32 {
+    let size = vec2f(textureDimensions(shadow_map));
+    let sector = trace_sector(trace, chart, axis);
+    let direction = sector[1] + (2.0 * t / size.x - 1.0) * sector[0];
+    let place = shadow_cube_point(direction);
+    let texel = vec2u(clamp(place.uv * size, vec2f(0.0), size - 1.0));
+    let stored = trace_stored(texel, place.face);
+    let along = max(abs(direction.x), max(abs(direction.y), abs(direction.z)));
+    return select(along * (stored - light.cube_depth.y) / light.cube_depth.x, TRACE_OPEN, stored <= 0.0);
 }
 
 // A texel's depth, 1 at the near plane, 0 where nothing was drawn.

@@ -55,8 +55,8 @@ pub(crate) struct FullScreen {
     pub(crate) target: wgpu::TextureView,
     /// Where there is one, the target keeps its content, and is drawn on only where this is 1.
     pub(crate) stencil: Option<wgpu::TextureView>,
-    /// Where there is one, what stands in this buffer at this offset [bytes] is drawn, 3 vertices or none, and the target
-    /// keeps its content.
+    /// Where there is one, what stands in this buffer at this offset [bytes] is drawn, 3 vertices, none, or points, and the
+    /// target keeps its content.
     pub(crate) gate: Option<(wgpu::Buffer, u64)>,
 }
 

@@ -176,8 +176,16 @@ impl LightScope<'_> {
 
     /// A storage buffer of this light that holds workgroups of so many dispatches.
     pub(crate) fn indirect(&mut self, name: &'static str, dispatches: u64) -> wgpu::Buffer {
+        self.indirect_bytes(name, dispatches * size_of::<[u32; 3]>() as u64)
+    }
+
+    /// A storage buffer of this light that holds vertices of so many draws.
+    pub(crate) fn indirect_draws(&mut self, name: &'static str, draws: u64) -> wgpu::Buffer {
+        self.indirect_bytes(name, draws * size_of::<[u32; 4]>() as u64)
+    }
+
+    fn indirect_bytes(&mut self, name: &'static str, bytes: u64) -> wgpu::Buffer {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-        let bytes = dispatches * size_of::<[u32; 3]>() as u64;
         self.pool
             .buffer(self.device, (Some(self.index), name), bytes, usage)
     }

@@ -21,6 +21,11 @@ struct SamplingParams {
 
 @group(2) @binding(0) var<uniform> sampling: SamplingParams;
 
+// View depth of a pixel [m] (the article's stage 1).
+fn sampling_view_depth(pixel: vec2u) -> f32 {
+    return camera_view_depth(textureLoad(frame_depth, pixel, 0));
+}
+
 // The two slices that a place on the picture [pixels] lies between.
 fn sampling_slices(place: vec2f) -> ScreenSlices {
     let border = screen_border(frame.camera.size, sampling.epipole, place);
@@ -37,3 +42,6 @@ fn sampling_similarity(depth: f32, source: f32) -> f32 {
 
 // Sources of less weight than this together cannot stand for a point.
 const SAMPLING_LEAST_WEIGHT: f32 = 0.01;
+
+// Lengths of lists are this many words apart: each is the vertices of an indirect draw of as many points.
+const SAMPLING_COUNT: u32 = 4u;

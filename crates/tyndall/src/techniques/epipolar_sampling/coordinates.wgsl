@@ -1,9 +1,8 @@
-// Stage 3: the coordinate texture. A sample's place follows from its slice's line; what is kept is the view depth there [m],
-// -1 where it lies outside the picture.
+// Stages 1 and 3: linear depth and the coordinate texture. A sample's place follows from its slice's line; what is kept is
+// the view depth there [m], -1 where it lies outside the picture.
 
-@group(2) @binding(1) var coordinates_linear_depth: texture_2d<f32>;
-@group(2) @binding(2) var<storage, read> coordinates_lines: array<ScreenLine>;
-@group(2) @binding(3) var<storage, read_write> coordinates_depth: array<f32>;
+@group(2) @binding(1) var<storage, read> coordinates_lines: array<ScreenLine>;
+@group(2) @binding(2) var<storage, read_write> coordinates_depth: array<f32>;
 
 @compute @workgroup_size(64)
 fn coordinates(@builtin(global_invocation_id) id: vec3u) {
@@ -18,7 +17,7 @@ fn coordinates(@builtin(global_invocation_id) id: vec3u) {
     var depth = -1.0;
     if any(line.step != vec2f(0.0)) && all(place >= vec2f(-margin)) && all(place <= size + margin) {
         let pixel = vec2u(clamp(place, vec2f(0.0), size - 1.0));
-        depth = textureLoad(coordinates_linear_depth, pixel, 0).r;
+        depth = sampling_view_depth(pixel);
     }
     coordinates_depth[id.y * sampling.samples + id.x] = depth;
 }

@@ -8,8 +8,8 @@ use crate::{
     epipolar::epipole::Epipole,
     gpu::{
         layout,
-        pass::{Dispatch, Pass, Work, Workgroups},
-        program::{ComputeProgram, ScreenProgram},
+        pass::{Dispatch, FullScreen, Pass, Work, Workgroups},
+        program::{ComputeProgram, Raster, ScreenProgram},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, SCREEN, STRETCH, TRACE},
     },
@@ -20,11 +20,14 @@ pub(crate) const COMMON: &str = include_str!("common.wgsl");
 const COARSE: &str = include_str!("coarse.wgsl");
 const MARCH: &str = include_str!("march.wgsl");
 const UNSHADOWED: &str = include_str!("unshadowed.wgsl");
+const FILTER: &str = include_str!("filter.wgsl");
+const OUTPUT: &str = include_str!("output.wgsl");
+const POINTS: &str = include_str!("points.wgsl");
 const GROUP_SIZE: &str = include_str!("group.wgsl");
 
 /// Invocations a group of the stages over samples, slices and lists.
 const GROUP: u32 = 64;
-/// Invocations a group of refinement and marking.
+/// Invocations a group of refinement.
 const SECTION_GROUP: u32 = 256;
 /// Pixels a group of the stages over pictures.
 const TILE: [u32; 2] = [16, 8];
@@ -32,6 +35,8 @@ const TILE: [u32; 2] = [16, 8];
 const LEVELS_A_DISPATCH: u32 = 4;
 /// Lists: samples to march, coarse pixels to correct, pixels to correct.
 const LISTS: u64 = 3;
+/// From the length of one list to the next: that of an indirect draw.
+const COUNT_BYTES: u64 = 16;
 
 /// `SamplingParams` of `common.wgsl`.
 #[repr(C)]
@@ -102,11 +107,9 @@ impl ParamsUniform {
 
 /// The technique's programs, one a stage.
 pub(crate) struct Programs {
-    linear_depth: ComputeProgram,
     slice_ends: ComputeProgram,
     coordinates: ComputeProgram,
     refine: ComputeProgram,
-    mark: ComputeProgram,
     slice_directions: ComputeProgram,
     tree: ComputeProgram,
     march_samples: ComputeProgram,
@@ -115,6 +118,9 @@ pub(crate) struct Programs {
     unwarp: ComputeProgram,
     upscale: ComputeProgram,
     finish: ScreenProgram,
+    unwarp_finish: ScreenProgram,
+    finish_points: ScreenProgram,
+    view: ScreenProgram,
 }
 
 /// What a stage binds after its parameters.
@@ -147,7 +153,6 @@ fn own(slots: &[Slot]) -> Vec<BindGroupLayoutEntry> {
 impl Programs {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         use Slot::{Airlight, Correct, Picture, Read, Texels, Tree, Write};
-        const DEPTH: Slot = Picture(TextureFormat::R32Float);
         const VALUES: Slot = Picture(TextureFormat::Rgba32Float);
         const LIT: &[&str] = &[AIRLIGHT, STRETCH, UNSHADOWED];
         const MARCHING: &[&str] = &[AIRLIGHT, STRETCH, UNSHADOWED, TRACE, COARSE, MARCH];
@@ -160,23 +165,15 @@ impl Programs {
             }};
         }
         Self {
-            linear_depth: program!(ComputeProgram, "linear_depth", &[], &[DEPTH]).for_all_lights(),
             slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3]).for_all_lights(),
-            coordinates: program!(ComputeProgram, "coordinates", &[], &[Texels, Read, Write])
+            coordinates: program!(ComputeProgram, "coordinates", &[], &[Read, Write])
                 .for_all_lights(),
             refine: program!(
                 ComputeProgram,
                 "refine",
                 LIT,
-                &[Read, Read, Write, Airlight]
+                &[Read, Read, Write, Airlight, Write, Write, Write]
             ),
-            mark: program!(
-                ComputeProgram,
-                "mark",
-                &[],
-                &[Read, Read, Write, Write, Write]
-            )
-            .for_all_lights(),
             slice_directions: program!(
                 ComputeProgram,
                 "slice_directions",
@@ -188,13 +185,13 @@ impl Programs {
                 ComputeProgram,
                 "march_samples",
                 MARCHING,
-                &[Read, Read, Read, Read, Write, Airlight, Read, Read]
+                &[Read, Read, Airlight, Read, Read, Read, Read, Write]
             ),
             correct: program!(
                 ComputeProgram,
                 "correct",
                 MARCHING,
-                &[Correct, Texels, Read, Read, VALUES, Airlight, Read, Read]
+                &[Read, Read, Airlight, Correct, Read, Read, VALUES]
             ),
             interpolate: program!(
                 ComputeProgram,
@@ -206,23 +203,41 @@ impl Programs {
             unwarp: program!(
                 ComputeProgram,
                 "unwarp",
-                &[COARSE],
-                &[Texels, Read, Texels, VALUES, Write, Write, Write]
+                &[COARSE, FILTER],
+                &[VALUES, Write, Write, Read, Texels, Write]
             )
             .for_all_lights(),
             upscale: program!(
                 ComputeProgram,
                 "upscale",
                 &[COARSE],
-                &[Texels, Texels, VALUES, Write, Write, Write]
+                &[Texels, VALUES, Write, Write, Write]
             )
             .for_all_lights(),
             finish: program!(
                 ScreenProgram,
                 "finish",
-                LIT,
-                &[Texels, Texels, Read, Read, Airlight]
+                &[AIRLIGHT, STRETCH, UNSHADOWED, OUTPUT],
+                &[Texels, Airlight]
             ),
+            unwarp_finish: program!(
+                ScreenProgram,
+                "unwarp_finish",
+                &[AIRLIGHT, STRETCH, UNSHADOWED, OUTPUT, FILTER],
+                &[Write, Write, Airlight, Read, Texels, Write]
+            ),
+            finish_points: program!(
+                ScreenProgram,
+                "finish",
+                &[AIRLIGHT, STRETCH, UNSHADOWED, OUTPUT, POINTS],
+                &[Texels, Airlight, Read]
+            )
+            .drawing(Raster {
+                vertex: "finish_point",
+                topology: wgpu::PrimitiveTopology::PointList,
+                ..Raster::full_screen(shared.output.into())
+            }),
+            view: program!(ScreenProgram, "view", &[], &[Texels, Read, Read]).for_all_lights(),
         }
     }
 }
@@ -230,7 +245,6 @@ impl Programs {
 /// What the stages of one light hand on.
 struct Resources {
     params: wgpu::Buffer,
-    linear_depth: wgpu::TextureView,
     lines: wgpu::Buffer,
     depth: wgpu::Buffer,
     sources: wgpu::Buffer,
@@ -244,8 +258,6 @@ struct Resources {
     values: wgpu::Buffer,
     /// What all samples see, and their depth.
     samples: wgpu::TextureView,
-    coarse: wgpu::TextureView,
-    coarse_list: wgpu::Buffer,
     airlight: wgpu::TextureView,
 }
 
@@ -256,15 +268,10 @@ impl Resources {
         let bytes = sizes.bytes();
         Self {
             params: scope.uniform("epipolar params", &uniform),
-            linear_depth: scope.storage_texture(
-                "linear depth",
-                scope.size,
-                TextureFormat::R32Float,
-            ),
             lines: scope.storage("slice ends", bytes.lines),
             depth: scope.storage("sample depths", bytes.depth),
             sources: scope.storage("interpolation sources", bytes.sources),
-            counts: scope.storage("list lengths", 4 * LISTS),
+            counts: scope.indirect_draws("list lengths", LISTS),
             dispatches: scope.indirect("list workgroups", LISTS),
             marched: scope.storage("marched samples", bytes.sources),
             traces: scope.storage("slice directions", bytes.traces),
@@ -275,14 +282,21 @@ impl Resources {
                 [sizes.samples, sizes.slices],
                 TextureFormat::Rgba32Float,
             ),
-            coarse: scope.storage_texture(
-                "rectangular values",
-                sizes.coarse,
-                TextureFormat::Rgba32Float,
-            ),
-            coarse_list: scope.storage("corrected pixels", bytes.coarse_list),
             airlight: scope.airlight(),
         }
+    }
+
+    /// The rectangular picture, and the list of its pixels that are corrected.
+    fn rectangular(
+        &self,
+        sizes: &Sizes,
+        scope: &mut LightScope<'_>,
+    ) -> (wgpu::Buffer, wgpu::TextureView) {
+        let format = TextureFormat::Rgba32Float;
+        (
+            scope.storage("corrected pixels", sizes.bytes().coarse_list),
+            scope.storage_texture("rectangular values", sizes.coarse, format),
+        )
     }
 
     fn indirect(&self, list: u64) -> Workgroups {
@@ -312,7 +326,13 @@ pub(crate) fn passes(
     let r = Resources::new(params, &sizes, scope);
     let mut passes = locate(programs, &sizes, scope, &r);
     passes.extend(gather(programs, &sizes, scope, &r));
-    passes.extend(rectangular(params, programs, &sizes, scope, &r));
+    // Through a stencil the last pass alone draws.
+    let is_direct = scope.stencil.is_none() && params.downscale == 1 && params.show == Show::Light;
+    if is_direct {
+        passes.extend(direct(programs, &sizes, scope, &r));
+    } else {
+        passes.extend(rectangular(params, programs, &sizes, scope, &r));
+    }
     passes
 }
 
@@ -321,12 +341,6 @@ fn locate(programs: &Programs, sizes: &Sizes, scope: &LightScope<'_>, r: &Resour
     let sections = [sizes.samples.div_ceil(SECTION_GROUP), sizes.slices, 1];
     let by_sample = [sizes.samples.div_ceil(GROUP), sizes.slices, 1];
     vec![
-        scope.compute(
-            &programs.linear_depth,
-            "linear depth",
-            &[buffer(&r.params), view(&r.linear_depth)],
-            tiles(scope.size),
-        ),
         scope.compute(
             &programs.slice_ends,
             "slice end points",
@@ -340,34 +354,19 @@ fn locate(programs: &Programs, sizes: &Sizes, scope: &LightScope<'_>, r: &Resour
         ),
         scope.compute(
             &programs.coordinates,
-            "coordinate texture",
-            &[
-                buffer(&r.params),
-                view(&r.linear_depth),
-                buffer(&r.lines),
-                buffer(&r.depth),
-            ],
+            "linear depth and coordinate texture",
+            &[buffer(&r.params), buffer(&r.lines), buffer(&r.depth)],
             by_sample,
         ),
         scope.compute(
             &programs.refine,
-            "refinement",
+            "refinement and marking",
             &[
                 buffer(&r.params),
                 buffer(&r.lines),
                 buffer(&r.depth),
                 buffer(&r.sources),
                 view(&r.airlight),
-            ],
-            sections,
-        ),
-        scope.compute(
-            &programs.mark,
-            "marking",
-            &[
-                buffer(&r.params),
-                buffer(&r.depth),
-                buffer(&r.sources),
                 buffer(&r.marched),
                 buffer(&r.counts),
                 buffer(&r.dispatches),
@@ -401,14 +400,14 @@ fn gather(
         "ray marching",
         &[
             buffer(&r.params),
+            buffer(&r.traces),
+            buffer(&r.nodes),
+            view(&r.airlight),
             buffer(&r.lines),
             buffer(&r.depth),
             buffer(&r.marched),
             buffer(&r.counts),
             buffer(&r.values),
-            view(&r.airlight),
-            buffer(&r.traces),
-            buffer(&r.nodes),
         ],
         r.indirect(0),
     ));
@@ -453,7 +452,51 @@ fn tree(
     starts.zip(NAMES).map(dispatch).collect()
 }
 
-/// Back to a picture: stages 10 to 13, and the phase function.
+/// Back to a picture at full resolution: stage 10 and the phase function in one, and again for the pixels that stage 11
+/// corrects.
+fn direct(
+    programs: &Programs,
+    sizes: &Sizes,
+    scope: &mut LightScope<'_>,
+    r: &Resources,
+) -> Vec<Pass> {
+    let (list, values) = r.rectangular(sizes, scope);
+    let unwarp = scope.full_screen(
+        &programs.unwarp_finish,
+        "unwarping and phase function",
+        &[
+            buffer(&r.params),
+            buffer(&list),
+            buffer(&r.counts),
+            view(&r.airlight),
+            buffer(&r.lines),
+            view(&r.samples),
+            buffer(&r.dispatches),
+        ],
+    );
+    let correction = correct(programs, scope, r, "correction", (1, 1), &list, &values);
+    let points = scope.draw(
+        &programs.finish_points,
+        &[
+            buffer(&r.params),
+            view(&values),
+            view(&r.airlight),
+            buffer(&list),
+        ],
+        scope.target.clone(),
+    );
+    let points = FullScreen {
+        gate: Some((r.counts.clone(), COUNT_BYTES)),
+        ..points
+    };
+    let points = Pass {
+        name: scope.pass_name("corrected pixels"),
+        work: Work::FullScreen(vec![points]),
+    };
+    vec![unwarp, correction, points]
+}
+
+/// Back to a picture by way of a rectangular one: stages 10 to 13, and the phase function or a debug view.
 fn rectangular(
     params: &Params,
     programs: &Programs,
@@ -461,71 +504,85 @@ fn rectangular(
     scope: &mut LightScope<'_>,
     r: &Resources,
 ) -> Vec<Pass> {
-    let mut passes = vec![scope.compute(
+    let (list, coarse) = r.rectangular(sizes, scope);
+    let unwarp = scope.compute(
         &programs.unwarp,
         "unwarping",
         &[
             buffer(&r.params),
-            view(&r.linear_depth),
+            view(&coarse),
+            buffer(&list),
+            buffer(&r.counts),
             buffer(&r.lines),
             view(&r.samples),
-            view(&r.coarse),
-            buffer(&r.coarse_list),
-            buffer(&r.counts),
             buffer(&r.dispatches),
         ],
         tiles(sizes.coarse),
-    )];
-    passes.push(correct(
+    );
+    let pixels = (1, params.downscale);
+    let mut passes = vec![
+        unwarp,
+        correct(programs, scope, r, "correction", pixels, &list, &coarse),
+    ];
+    let mut values = coarse;
+    if params.downscale > 1 {
+        let (upscaled, passes_there) = upscale(programs, sizes, scope, r, &values);
+        passes.extend(passes_there);
+        values = upscaled;
+    }
+    passes.push(match params.show {
+        Show::Light => scope.full_screen(
+            &programs.finish,
+            "phase function",
+            &[buffer(&r.params), view(&values), view(&r.airlight)],
+        ),
+        _ => scope.full_screen(
+            &programs.view,
+            "view",
+            &[
+                buffer(&r.params),
+                view(&values),
+                buffer(&r.lines),
+                buffer(&r.sources),
+            ],
+        ),
+    });
+    passes
+}
+
+/// To full resolution: stages 12 and 13.
+fn upscale(
+    programs: &Programs,
+    sizes: &Sizes,
+    scope: &mut LightScope<'_>,
+    r: &Resources,
+    coarse: &wgpu::TextureView,
+) -> (wgpu::TextureView, [Pass; 2]) {
+    let list = scope.storage("upscaled, corrected pixels", sizes.bytes().list);
+    let values = scope.storage_texture("upscaled values", scope.size, TextureFormat::Rgba32Float);
+    let pass = scope.compute(
+        &programs.upscale,
+        "upscaling",
+        &[
+            buffer(&r.params),
+            view(coarse),
+            view(&values),
+            buffer(&list),
+            buffer(&r.counts),
+            buffer(&r.dispatches),
+        ],
+        tiles(scope.size),
+    );
+    let correction = correct(
         programs,
         scope,
         r,
-        "correction",
-        (1, params.downscale),
-        &r.coarse_list,
-        &r.coarse,
-    ));
-    let mut values = r.coarse.clone();
-    if params.downscale > 1 {
-        let list = scope.storage("upscaled, corrected pixels", sizes.bytes().list);
-        values = scope.storage_texture("upscaled values", scope.size, TextureFormat::Rgba32Float);
-        passes.push(scope.compute(
-            &programs.upscale,
-            "upscaling",
-            &[
-                buffer(&r.params),
-                view(&r.linear_depth),
-                view(&r.coarse),
-                view(&values),
-                buffer(&list),
-                buffer(&r.counts),
-                buffer(&r.dispatches),
-            ],
-            tiles(scope.size),
-        ));
-        passes.push(correct(
-            programs,
-            scope,
-            r,
-            "second correction",
-            (2, 1),
-            &list,
-            &values,
-        ));
-    }
-    passes.push(scope.full_screen(
-        &programs.finish,
-        "phase function",
-        &[
-            buffer(&r.params),
-            view(&values),
-            view(&r.linear_depth),
-            buffer(&r.lines),
-            buffer(&r.sources),
-            view(&r.airlight),
-        ],
-    ));
-    passes
+        "second correction",
+        (2, 1),
+        &list,
+        &values,
+    );
+    (values, [pass, correction])
 }
 
 /// Marches the pixels of a list, of a picture that is `downscale` times smaller than the full one.
@@ -546,14 +603,13 @@ fn correct(
     let uniform = scope.uniform(name, &uniform);
     let own = [
         buffer(&r.params),
+        buffer(&r.traces),
+        buffer(&r.nodes),
+        view(&r.airlight),
         buffer(&uniform),
-        view(&r.linear_depth),
         buffer(pixels),
         buffer(&r.counts),
         view(out),
-        view(&r.airlight),
-        buffer(&r.traces),
-        buffer(&r.nodes),
     ];
     scope.compute(&programs.correct, name, &own, r.indirect(list.into()))
 }

@@ -1,10 +1,12 @@
 // Marching a view ray column by column of its slice (Yusov 2012, algorithms 1 and 2). The ray is a straight line over the
-// columns; lambda in [0, 1] runs along it from the smaller t to the larger. Where the line crosses a column's depth the
-// column is lit in part. A node of the tree is lit or dark as a whole iff all of its columns are, by the same comparisons
-// of the same numbers, and adjoining lit columns make one stretch: with the tree and without it the stretches are the same.
+// columns; lambda in [0, 1] runs along it from the smaller t to the larger. Of a column two texels count at most, one after
+// the other; where the line crosses a texel's depth that is lit in part. A node of the tree is lit or dark as a whole iff all
+// of its texels are, by the same comparisons of the same numbers, and adjoining lit texels make one stretch: with the tree
+// and without it the stretches are the same.
 
-@group(2) @binding(7) var<storage, read> march_traces: array<Trace>;
-@group(2) @binding(8) var<storage, read> march_nodes: array<vec2f>;
+@group(2) @binding(1) var<storage, read> march_traces: array<Trace>;
+@group(2) @binding(2) var<storage, read> march_nodes: array<vec2f>;
+@group(2) @binding(3) var airlight_table: texture_2d_array<f32>;
 
 // Where something tints the light, a ray is cut into this many steps at least.
 const MARCH_TINTED_STEPS: f32 = 256.0;
@@ -129,22 +131,29 @@ fn march_columns(tree: u32, trace: Trace, levels: u32, ray: Ray, part: MarchPart
     let rise = line.z.y - line.z.x;
     var column = part.columns.x;
     var level = 0u;
+    // Whether the column's first texel is behind.
+    var is_second = false;
     var run = part.run;
     var sum = vec3f(0.0);
     loop {
         let is_done = column >= part.columns.y;
         var lit = vec2f(0.0);
         if !is_done {
-            let next = column + (1u << level);
-            // A ray that comes in over the map's rim begins in the first column, whatever rounding says.
-            let edges = saturate((vec2f(f32(column), f32(next)) - line.t.x) * inverse);
-            let depths = line.z.x + edges * rise;
+            var next = column + (1u << level);
+            var ends = vec2f(f32(column), f32(next));
             var bounds = vec2f(0.0);
             if level == 0u {
-                bounds = vec2f(trace_depth(trace, part.chart, sampling.axis, column));
+                let texels = trace_column(trace, part.chart, sampling.axis, column);
+                bounds = vec2f(select(texels.depths.x, texels.depths.y, is_second));
+                ends = select(vec2f(ends.x, texels.split), vec2f(texels.split, ends.y), is_second);
+                is_second = !is_second && texels.split < f32(next);
+                next = select(next, column, is_second);
             } else {
                 bounds = march_nodes[tree + (sampling.columns >> level) + (column >> level)];
             }
+            // A ray that comes in over the map's rim begins in the first column, whatever rounding says.
+            let edges = saturate((ends - line.t.x) * inverse);
+            let depths = line.z.x + edges * rise;
             lit = edges;
             if min(depths.x, depths.y) < bounds.y {
                 if max(depths.x, depths.y) < bounds.x {
@@ -157,7 +166,8 @@ fn march_columns(tree: u32, trace: Trace, levels: u32, ray: Ray, part: MarchPart
                 }
             }
             column = next;
-            level = min(level + u32((next & ((2u << level) - 1u)) == 0u), levels);
+            let climbs = !is_second && (next & ((2u << level) - 1u)) == 0u;
+            level = min(level + u32(climbs), levels);
         }
         let is_lit = lit.x < lit.y;
         if is_done || (is_lit && lit.x > run.y) {

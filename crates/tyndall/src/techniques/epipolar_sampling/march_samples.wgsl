@@ -1,11 +1,10 @@
 // Stage 8: ray marching of the listed samples.
 
-@group(2) @binding(1) var<storage, read> samples_lines: array<ScreenLine>;
-@group(2) @binding(2) var<storage, read> samples_depth: array<f32>;
-@group(2) @binding(3) var<storage, read> samples_list: array<u32>;
-@group(2) @binding(4) var<storage, read> samples_counts: array<u32>;
-@group(2) @binding(5) var<storage, read_write> samples_values: array<vec4f>;
-@group(2) @binding(6) var airlight_table: texture_2d_array<f32>;
+@group(2) @binding(4) var<storage, read> samples_lines: array<ScreenLine>;
+@group(2) @binding(5) var<storage, read> samples_depth: array<f32>;
+@group(2) @binding(6) var<storage, read> samples_list: array<u32>;
+@group(2) @binding(7) var<storage, read> samples_counts: array<u32>;
+@group(2) @binding(8) var<storage, read_write> samples_values: array<vec4f>;
 
 @compute @workgroup_size(64)
 fn march_samples(@builtin(global_invocation_id) id: vec3u) {

@@ -1,5 +1,6 @@
 // Stage 4: from which two samples of its slice each sample is interpolated (Yusov 2012, section 6.2). Sections of
-// `initial_step` samples are cut where neighbours differ; a bit a sample says so.
+// `initial_step` samples are cut where neighbours differ; a bit a sample says so. Stage 5: the list of samples to march,
+// those that are their own source. In order within a group, so that neighbours in the list are neighbours on the picture.
 
 const REFINE_GROUP: u32 = 256u;
 // Sections at the epipole are this many times shorter.
@@ -10,14 +11,21 @@ const REFINE_DENSER: u32 = 4u;
 // First and second source in 16 bits each.
 @group(2) @binding(3) var<storage, read_write> refine_sources: array<u32>;
 @group(2) @binding(4) var airlight_table: texture_2d_array<f32>;
+@group(2) @binding(5) var<storage, read_write> refine_list: array<u32>;
+@group(2) @binding(6) var<storage, read_write> refine_counts: array<atomic<u32>>;
+@group(2) @binding(7) var<storage, read_write> refine_dispatches: array<atomic<u32>>;
 
 // Bit i: sample i of the group and the next one differ.
 var<workgroup> refine_breaks: array<atomic<u32>, 8>;
+// Bit i: sample i of the group is marched.
+var<workgroup> refine_marks: array<atomic<u32>, 8>;
+var<workgroup> refine_start: u32;
 
 @compute @workgroup_size(256)
 fn refine(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) index: u32) {
     if index < 8u {
         atomicStore(&refine_breaks[index], 0u);
+        atomicStore(&refine_marks[index], 0u);
     }
     workgroupBarrier();
     let sample = group.x * REFINE_GROUP + index;
@@ -27,9 +35,46 @@ fn refine(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
         atomicOr(&refine_breaks[index / 32u], 1u << (index % 32u));
     }
     workgroupBarrier();
+    var is_own = false;
     if sample < sampling.samples {
-        refine_sources[here] = refine_search(group.x * REFINE_GROUP, sample);
+        let sources = refine_search(group.x * REFINE_GROUP, sample);
+        refine_sources[here] = sources;
+        is_own = refine_depth[here] >= 0.0 && (sources & 0xffffu) == sample;
     }
+    if is_own {
+        atomicOr(&refine_marks[index / 32u], 1u << (index % 32u));
+    }
+    workgroupBarrier();
+    if index == 0u {
+        refine_start = refine_reserve();
+    }
+    workgroupBarrier();
+    if is_own {
+        refine_list[refine_start + refine_marks_before(index)] = here;
+    }
+}
+
+// Room in the list for the group's marks: where it starts.
+fn refine_reserve() -> u32 {
+    let count = refine_marks_before(REFINE_GROUP);
+    var start = 0u;
+    if count > 0u {
+        start = atomicAdd(&refine_counts[0], count);
+        atomicMax(&refine_dispatches[0], (start + count + MARCH_GROUP - 1u) / MARCH_GROUP);
+    }
+    return start;
+}
+
+// How many samples of the group before one are marked.
+fn refine_marks_before(index: u32) -> u32 {
+    var before = 0u;
+    for (var i = 0u; i < index / 32u; i++) {
+        before += countOneBits(atomicLoad(&refine_marks[i]));
+    }
+    if index % 32u > 0u {
+        before += countOneBits(atomicLoad(&refine_marks[index / 32u]) & ((1u << (index % 32u)) - 1u));
+    }
+    return before;
 }
 
 fn refine_differ(slice: u32, sample: u32, depth: f32, next: f32) -> bool {

@@ -6,8 +6,12 @@
 
 @compute @workgroup_size(64)
 fn slice_ends(@builtin(global_invocation_id) id: vec3u) {
-    if id.x < arrayLength(&slice_counts) {
-        slice_counts[id.x] = 0u;
+    if id.x < arrayLength(&slice_counts) / SAMPLING_COUNT {
+        let count = SAMPLING_COUNT * id.x;
+        slice_counts[count] = 0u;
+        slice_counts[count + 1u] = 1u;
+        slice_counts[count + 2u] = 0u;
+        slice_counts[count + 3u] = 0u;
         slice_dispatches[3u * id.x] = 0u;
         slice_dispatches[3u * id.x + 1u] = 1u;
         slice_dispatches[3u * id.x + 2u] = 1u;

@@ -50,7 +50,8 @@ fn tree_child(row: u32, trace: Trace, index: u32) -> vec2f {
     if index < trace.columns.x || index >= trace.columns.y {
         return TREE_NOTHING;
     }
-    return vec2f(trace_depth(trace, row % trace_charts(), sampling.axis, index));
+    let depths = trace_column(trace, row % trace_charts(), sampling.axis, index).depths;
+    return vec2f(min(depths.x, depths.y), max(depths.x, depths.y));
 }
 
 // A node of a level above the children's, where the tree goes so high.
