@@ -280,6 +280,7 @@ mod tests {
 
     use crate::{
         gpu::shader::{AIRLIGHT, FRAME_MODULES, LIGHT_MODULES, MARCH, STRETCH, join},
+        occluder,
         techniques::{hybrid, light_volume, ray_march},
     };
 
@@ -296,6 +297,8 @@ mod tests {
             STRETCH,
             MARCH,
             ray_march::gpu::PARAMS,
+            occluder::gpu::TILE,
+            occluder::gpu::VOLUME,
             hybrid::gpu::HYBRID,
             light_volume::gpu::CUBE,
             light_volume::gpu::MESH,
@@ -327,6 +330,11 @@ mod tests {
             (
                 "HybridParams",
                 layout!(hybrid::gpu::ParamsUniform: steps, bounds, show),
+            ),
+            (
+                "OccluderParams",
+                layout!(occluder::gpu::ParamsUniform: first_place, places, edges, triangles, least, walls, most, caps,
+                    counts, columns),
             ),
             (
                 "LightVolumeParams",

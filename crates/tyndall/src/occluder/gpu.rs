@@ -18,7 +18,8 @@ use crate::{
 
 /// What is kept of the boundaries on the screen; needs the frame.
 pub(crate) const TILE: &str = include_str!("tile.wgsl");
-const VOLUME: &str = include_str!("volume.wgsl");
+/// The boundaries themselves; needs frame and light.
+pub(crate) const VOLUME: &str = include_str!("volume.wgsl");
 const LIST: &str = include_str!("list.wgsl");
 const CLEAR: &str = include_str!("clear.wgsl");
 const EYE: &str = include_str!("eye.wgsl");
@@ -305,7 +306,12 @@ impl<'a> Volumes<'a> {
             dispatches.push(of_pieces(&programs.walls, run, &mesh.edges, walls));
             dispatches.push(of_pieces(&programs.caps, run, &mesh.triangles, caps));
             if is_local {
-                dispatches.push(of_pieces(&programs.far_caps, run, &mesh.triangles, far_caps));
+                dispatches.push(of_pieces(
+                    &programs.far_caps,
+                    run,
+                    &mesh.triangles,
+                    far_caps,
+                ));
             }
         }
         dispatches
