@@ -48,7 +48,7 @@ fn decide() {
         decide_dispatches[3u * i + 1u] = groups.y;
         decide_dispatches[3u * i + 2u] = groups.z;
     }
-    let groups = select(vec3u(0u), reuse.dispatches[0].xyz, mode == REUSE_REPROJECT);
+    let groups = select(vec3u(0u), vec3u((reuse.pixels + 7u) / 8u, 1u), mode == REUSE_REPROJECT);
     decide_dispatches[DECIDE_REPROJECT] = groups.x;
     decide_dispatches[DECIDE_REPROJECT + 1u] = groups.y;
     decide_dispatches[DECIDE_REPROJECT + 2u] = groups.z;

@@ -340,7 +340,7 @@ fn params(
     levels: &[[u32; 2]],
     scope: &LightScope<'_>,
 ) -> ParamsUniform {
-    let tiles = scope.size.map(|n| n.div_ceil(SIDE));
+    let tiles = scope.size.map(|n| n.div_ceil(SIDE).div_ceil(SIDE));
     let groups = levels.iter().map(|side| {
         let [columns, rows] = side.map(|n| n.div_ceil(SIDE));
         [columns, rows, faces, 0]

@@ -11,9 +11,6 @@
 @group(2) @binding(7) var<storage, read> tiles_found: array<vec4u>; // see reproject.wgsl
 
 const TILES_SIDE: u32 = 8u;
-const TILES_LANES: u32 = 16u;
-// Pixels an invocation.
-const TILES_PIXELS: u32 = TILES_SIDE * TILES_SIDE / TILES_LANES;
 const TILES_SLABS: u32 = 16u;
 const TILES_PARTS: u32 = 8u;
 // While the camera rests, what is not exact is computed again within so many frames.
@@ -24,120 +21,109 @@ const TILES_SPAN: u32 = 3u;
 const TILES_TEXELS: f32 = 1.0;
 const TILES_DEPTH: vec2f = vec2f(2e-6, 1e-5);
 
-var<workgroup> tiles_farthest: atomic<u32>;
-var<workgroup> tiles_near: atomic<u32>; // a bit a slab
-var<workgroup> tiles_touched: atomic<u32>;
-var<workgroup> tiles_stale: atomic<u32>;
-
-@compute @workgroup_size(16)
-fn tiles(@builtin(workgroup_id) tile: vec3u, @builtin(local_invocation_index) lane: u32) {
-    var stale = 0u; // a bit a pixel of this invocation's
-    var deepest = 0.0;
-    for (var i = 0u; i < TILES_PIXELS; i++) {
-        let pixel = tiles_pixel(tile.xy, lane, i);
-        if all(pixel < reuse.pixels) {
-            let place = pixel.y * reuse.pixels.x + pixel.x;
-            let depth = textureLoad(frame_depth, pixel, 0);
-            deepest = max(deepest, camera_view_depth(depth));
-            let is_stale = tiles_pixel_changed(pixel, place, depth) || tiles_memory(tile.xy, place) == REUSE_LOST;
-            stale |= u32(is_stale) << i;
-        }
+// A tile an invocation: none waits for another.
+@compute @workgroup_size(8, 8)
+fn tiles(@builtin(global_invocation_id) id: vec3u) {
+    let corner = TILES_SIDE * id.xy;
+    if any(corner >= reuse.pixels) {
+        return;
     }
-    atomicMax(&tiles_farthest, bitcast<u32>(deepest));
-    workgroupBarrier();
-    let corner = vec2f(TILES_SIDE * tile.xy);
-    let farthest = bitcast<f32>(atomicLoad(&tiles_farthest));
-    let slabs = select(0u, TILES_SLABS, reuse.mask == REUSE_CHANGE);
-    for (var i = lane; i < slabs; i += TILES_LANES) {
-        if tiles_slab_changed(corner, farthest * vec2f(f32(i), f32(i + 1u)) / f32(TILES_SLABS)) {
-            atomicOr(&tiles_near, 1u << i);
-        }
-    }
-    workgroupBarrier();
-    // Once a part meets a change, the whole tile is stale.
-    let near = atomicLoad(&tiles_near);
-    let parts = TILES_PARTS * countOneBits(near);
-    for (var i = lane; i < parts; i += TILES_LANES) {
-        let first = f32(TILES_PARTS * tiles_bit(near, i / TILES_PARTS) + i % TILES_PARTS);
-        if tiles_slab_changed(corner, farthest * vec2f(first, first + 1.0) / f32(TILES_PARTS * TILES_SLABS)) {
-            atomicStore(&tiles_touched, 1u);
-        }
-    }
-    workgroupBarrier();
+    let end = min(corner + TILES_SIDE, reuse.pixels);
+    let mode = tiles_state.mode;
+    let asks_for_change = frame_choice(reuse.mask) == REUSE_CHANGE;
+    let is_its_turn = (id.x + 3u * id.y + tiles_state.turn) % TILES_TURNS == 0u;
+    var farthest = 0.0;
     var computed = 0u;
-    let is_whole = tiles_state.mode < REUSE_MASKED || atomicLoad(&tiles_touched) != 0u;
-    for (var i = 0u; i < TILES_PIXELS; i++) {
-        let pixel = tiles_pixel(tile.xy, lane, i);
-        if all(pixel < reuse.pixels) {
-            let is_computed = is_whole || ((stale >> i) & 1u) == 1u;
-            tiles_settle(tile.xy, pixel, is_computed);
-            computed += u32(is_computed);
+    let witnessed = tiles_witness_changed(corner, mode);
+    for (var y = corner.y; y < end.y; y++) {
+        for (var x = corner.x; x < end.x; x++) {
+            let place = y * reuse.pixels.x + x;
+            let depth = textureLoad(frame_depth, vec2u(x, y), 0);
+            farthest = max(farthest, camera_view_depth(depth));
+            let memory = tiles_memory(place, mode, is_its_turn);
+            let is_seen_changed = tiles_is_in(witnessed, vec2u(x, y) - corner);
+            let is_depth_changed = tiles_depth_changed(place, depth) && asks_for_change && mode != REUSE_REPROJECT;
+            let is_stale = is_depth_changed || is_seen_changed || memory == REUSE_LOST;
+            tiles_age[place] = select(tiles_older(memory), 0u, is_stale);
+            computed += u32(is_stale);
         }
     }
-    atomicAdd(&tiles_stale, computed);
-    workgroupBarrier();
-    if lane == 0u && tiles_state.mode >= REUSE_MASKED {
-        let stale_in_all = atomicLoad(&tiles_stale);
-        if stale_in_all > 0u {
-            atomicAdd(&tiles_state.stale, stale_in_all);
+    let is_whole = mode < REUSE_MASKED || (asks_for_change && tiles_beam_changed(vec2f(corner), farthest));
+    if is_whole {
+        for (var y = corner.y; y < end.y; y++) {
+            for (var x = corner.x; x < end.x; x++) {
+                tiles_age[y * reuse.pixels.x + x] = 0u;
+            }
         }
+        computed = (end.x - corner.x) * (end.y - corner.y);
     }
-}
-
-// An invocation's pixels, two rows of the tile apart.
-fn tiles_pixel(tile: vec2u, lane: u32, i: u32) -> vec2u {
-    let index = TILES_LANES * i + lane;
-    return TILES_SIDE * tile + vec2u(index % TILES_SIDE, index / TILES_SIDE);
-}
-
-// Leaves how old a pixel is, and what it was computed from.
-fn tiles_settle(tile: vec2u, pixel: vec2u, is_computed: bool) {
-    let place = pixel.y * reuse.pixels.x + pixel.x;
-    let memory = tiles_memory(tile, place);
-    let age = min((memory & REUSE_AGE) + 1u, REUSE_AGE);
-    tiles_age[place] = select((memory & REUSE_ERROR) | age, 0u, is_computed);
-    tiles_remember(pixel);
-}
-
-// The place of a number's bit `index`, of those that are set.
-fn tiles_bit(bits: u32, index: u32) -> u32 {
-    var left = bits;
-    for (var i = 0u; i < index; i++) {
-        left &= left - 1u;
+    if mode >= REUSE_MASKED && computed > 0u {
+        atomicAdd(&tiles_state.stale, computed);
     }
-    return firstTrailingBit(left);
 }
 
 // What is remembered of what the pixel sees.
-fn tiles_memory(tile: vec2u, place: u32) -> u32 {
-    if tiles_state.mode == REUSE_REPROJECT {
+fn tiles_memory(place: u32, mode: u32, is_its_turn: bool) -> u32 {
+    if mode == REUSE_REPROJECT {
         return tiles_found[place].w;
     }
     let memory = tiles_age[place];
-    let is_its_turn = (tile.x + 3u * tile.y + tiles_state.turn) % TILES_TURNS == 0u;
     return select(memory, REUSE_LOST, is_its_turn && memory > REUSE_AGE);
 }
 
-// Whether what the pixel's last pass reads of this very pixel has changed, for the same camera; remembers it.
-fn tiles_pixel_changed(pixel: vec2u, place: u32, depth: f32) -> bool {
-    var is_changed = bitcast<u32>(tiles_depth[place]) != bitcast<u32>(depth);
-    tiles_depth[place] = depth;
-    let tile = occluder_tile_of(pixel);
-    if reuse.mask == REUSE_GEOMETRY {
-        return occluder_is_met(tiles_witness[tile]);
-    }
-    if reuse.has_witness == 1u {
-        is_changed = is_changed || any(bitcast<vec2u>(tiles_seen[tile]) != bitcast<vec2u>(tiles_witness[tile]));
-    }
-    return is_changed && tiles_state.mode != REUSE_REPROJECT;
+// The same a frame later.
+fn tiles_older(memory: u32) -> u32 {
+    return (memory & REUSE_ERROR) | min((memory & REUSE_AGE) + 1u, REUSE_AGE);
 }
 
-// Remembers the witness, a tile once.
-fn tiles_remember(pixel: vec2u) {
-    if reuse.has_witness == 1u && all(pixel % OCCLUDER_TILE == vec2u(0u)) {
-        let tile = occluder_tile_of(pixel);
-        tiles_seen[tile] = tiles_witness[tile];
+// Whether the pixel's depth has changed; remembers it.
+fn tiles_depth_changed(place: u32, depth: f32) -> bool {
+    let is_changed = bitcast<u32>(tiles_depth[place]) != bitcast<u32>(depth);
+    if is_changed {
+        tiles_depth[place] = depth;
     }
+    return is_changed;
+}
+
+// The quarters of a tile, a bit each, that what the last pass reads besides has changed of, for the same camera; remembers it.
+fn tiles_witness_changed(corner: vec2u, mode: u32) -> u32 {
+    var changed = 0u;
+    for (var i = 0u; i < 4u * frame_choice(reuse.has_witness); i++) {
+        let pixel = corner + OCCLUDER_TILE * vec2u(i & 1u, i >> 1u);
+        if all(pixel < reuse.pixels) {
+            let place = occluder_tile_of(pixel);
+            let witness = tiles_witness[place];
+            let is_other = any(bitcast<vec2u>(tiles_seen[place]) != bitcast<vec2u>(witness));
+            tiles_seen[place] = witness;
+            let is_stale = select(
+                is_other && mode != REUSE_REPROJECT,
+                occluder_is_met(witness),
+                reuse.mask == REUSE_GEOMETRY,
+            );
+            changed |= u32(is_stale) << i;
+        }
+    }
+    return changed;
+}
+
+// Whether a pixel of a tile is in one of these quarters.
+fn tiles_is_in(quarters: u32, local: vec2u) -> bool {
+    let quarter = local / OCCLUDER_TILE;
+    return ((quarters >> (2u * quarter.y + quarter.x)) & 1u) == 1u;
+}
+
+// Whether any ray of a tile passes a change of the shadow map.
+fn tiles_beam_changed(corner: vec2f, farthest: f32) -> bool {
+    var is_changed = false;
+    for (var i = 0u; i < TILES_SLABS && !is_changed; i++) {
+        let slab = farthest * vec2f(f32(i), f32(i + 1u)) / f32(TILES_SLABS);
+        let parts = select(0u, TILES_PARTS, tiles_slab_changed(corner, slab));
+        for (var k = 0u; k < parts && !is_changed; k++) {
+            let part = mix(vec2f(slab.x), vec2f(slab.y), vec2f(f32(k), f32(k + 1u)) / f32(TILES_PARTS));
+            is_changed = tiles_slab_changed(corner, part);
+        }
+    }
+    return is_changed;
 }
 
 // Eight corners of a slab of the beam: four rays round the tile, at two view depths.
