@@ -11,12 +11,12 @@
 //! - **change** (default): needs no geometry. The shadow map and the depth buffer are compared with those of the frame
 //!   before. A pixel is stale where its depth changed, or where its ray passes a shadow-map texel whose visibility changed,
 //!   at a depth between the old and the new one. The texels' depth ranges are kept in a pyramid of blocks of 8 x 8; the beam
-//!   of a tile of 8 x 8 pixels is held against it in 16 slabs, and those that meet a change in 8 parts each. All is rounded outwards: **a kept pixel is bit by bit what
-//!   computing it again would give**, for any number of frames.
+//!   of a tile of 8 x 8 pixels is held against it in 16 slabs, and those that meet a change in 8 parts each. All is rounded
+//!   outwards: **a kept pixel is bit by bit what computing it again would give**, for any number of frames.
 //! - **geometry**: the thesis's own. Moving occluders ([`LightInputs::occluders`](crate::LightInputs)) and their shadow
-//!   volumes are rasterised where they were in the frame before and where they are now, by tiles of 4 x 4 pixels. Pixels may be lost: those whose shadows
-//!   differ from frame to frame for another reason than a listed occluder's movement. Hence a full frame every
-//!   [`frames`](Reuse::frames) + 1 frames.
+//!   volumes are rasterised where they were in the frame before and where they are now, by tiles of 4 x 4 pixels. Pixels may
+//!   be lost: those whose shadows differ from frame to frame for another reason than a listed occluder's movement. Hence a
+//!   full frame every [`frames`](Reuse::frames) + 1 frames.
 //!
 //! The thesis has the beam of one shadow volume cover whatever the moving object shadows; a mask of change leaves out the
 //! inside of a shadow that merely got another boundary.
@@ -77,6 +77,11 @@
 //! 4 bytes a shadow-map texel (what the frame before saw), 12 bytes a pixel and the light's kept picture; one read of map
 //! and depth. Lights through coloured glass are kept only while their maps' `shadow_revision` stays. A camera that moves
 //! takes another 16 bytes a pixel, four looks at the shadow map and twenty at the kept picture.
+//!
+//! Of a dragon that turns, 23 % of the pixels differ from frame to frame, and the mask of change covers 26 %. About `hybrid` that
+//! saves little more than a fifth: what changes is where the steps are, 63 to 70 % of its last pass, and its volumes are found
+//! anew each frame. About `ray-march` it saves what it leaves out. Tried: asking the quarters of a tile that meets a change
+//! covered a thirtieth less and took half as long again to find.
 
 mod gate;
 pub(crate) mod gpu;

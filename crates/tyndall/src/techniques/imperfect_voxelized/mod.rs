@@ -70,22 +70,22 @@
 //!
 //! # Cost
 //!
-//! `results/wyman-dai.txt` has the paper's tables on a software driver, 320 x 240 pixels, with half as many points a map as
-//! are taken by default. With 256 samples the naive form runs 1282
-//! passes where this runs 7. What that saves is the overhead of the others, which on the paper's device was 15 to 25 times the
-//! work of a coarse sample in them (0.23 ms a pass against 0.014 ms of voxels), and on the software driver, which starts a
-//! dispatch by calling it, 0.1 to 0.6 ms against 0.4 ms of work on two cores. So the paper's ratios of table 1 (18.6, 16.6, 25.8, 2.0 for maps,
-//! voxels, scan and gather, 5.6 for a frame) come out as 2.7, 1.4, 1.9, 1.8 and 1.8: the table beside says for each stage
-//! what a pass costs besides its work, and what it would have to. At the paper's overheads (0.25, 0.23 and 0.45 ms) and
-//! 30 times as fast at the work, the same counts give 20, 17 and 26. What saves work rather than passes saves as
-//! much as in the paper: interleaved gathering 7.4 times (6.3 there), a frame with it 4 to 8 times over the naive form (20 there).
+//! `results/wyman-dai.txt` has the paper's tables on a software driver, 320 x 240 pixels. With 256 samples the naive form runs
+//! 1282 passes where this runs 7. What that saves is the overhead of the others, which on the paper's device was 15 to 25 times
+//! the work of a coarse sample in them (0.23 ms a pass against 0.014 ms of voxels), and on the software driver, which starts a
+//! dispatch by calling it, 0.4 to 0.8 ms against 0.1 to 0.2 ms of work on two cores. So the paper's ratios of table 1 (18.6,
+//! 16.6, 25.8, 2.0 for maps, voxels, scan and gather, 5.6 for a frame) come out as 3.1, 3.1, 9.6, 1.7 and 2.0: the table beside
+//! says for each stage what a pass costs besides its work, and what it would have to. At the paper's overheads (0.25, 0.23 and
+//! 0.45 ms) and 30 times as fast at the work, the same counts give 36, 39 and 140. What saves work rather than passes saves as
+//! much as in the paper: interleaved gathering 7.9 times (6.3 there), a frame with it 7 to 9 times over the naive form (20
+//! there, where the naive form's overhead counts).
 //!
 //! A thread of the gather takes two pixels, so that what it reads of a sample serves both; gathered interleaved, a workgroup's pixels
 //! lie three apart, so that all of them take the same samples and read neighbouring rows of the same grids. Where words of
 //! voxels are many, a thread scans one by itself and reads it once.
 //!
 //! 256 grids of 128^3 voxels are 64 MiB, four times one grid of 512^3, and their light rays sixteen times as many. A frame,
-//! gathered interleaved, takes 3.5 times one of a lamp with `vsv` at 512^3.
+//! gathered interleaved, takes 3.4 times one of a lamp with `vsv` at 512^3.
 //!
 //! # What was tried
 //!
