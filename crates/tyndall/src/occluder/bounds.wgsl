@@ -1,9 +1,9 @@
-// Rasterises the listed pieces of the shadow volumes' boundaries, so that nothing is missed: where a piece meets a tile at all, the
-// tile's bounds hold all depths at which it does.
+// Rasterises the listed pieces of the shadow volumes' boundaries, so that nothing is missed: where a piece meets a tile at
+// all, the tile's bounds hold all depths at which it does.
 //
-// Pieces are flat and convex, with corners in homogeneous coordinates: they reach to infinity and behind the eye, and are never
-// clipped (Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, 1997). What a rectangle of the screen holds
-// of one is spanned by its edges within the rectangle and by those of the rectangle's corners that lie in it.
+// Pieces are flat and convex, with corners in homogeneous coordinates: they reach to infinity and behind the eye, and are
+// never clipped (Olano and Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, 1997). What a rectangle of the
+// screen holds of one is spanned by its edges within the rectangle and by those of the rectangle's corners that lie in it.
 
 @group(2) @binding(4) var<storage, read> bounds_list: array<vec2u>; // an element's index and its place's
 @group(2) @binding(5) var<storage, read> bounds_counts: array<u32>; // of walls and caps, run by run
@@ -73,8 +73,8 @@ fn bounds_far_caps(
     bounds_all(BOUNDS_FAR_CAPS, 12u * occluder_params.places, group.x, groups.x, lane);
 }
 
-// All pieces of a kind, in batches: first those are left that are not in the shadow of others; then each invocation takes some of
-// few rows, and all together those of many.
+// All pieces of a kind, in batches: first those are left that are not in the shadow of others; then each invocation takes
+// some of few rows, and all together those of many.
 fn bounds_all(kind: u32, count: u32, group: u32, groups: u32, lane: u32) {
     for (var first = group * BOUNDS_BATCH; first < count; first += groups * BOUNDS_BATCH) {
         if lane == 0u {

@@ -1,6 +1,6 @@
-// What is kept of the shadow volumes' boundaries on the screen: view depths [m] a tile of 4 x 4 pixels, between which lies whatever
-// a ray of the tile meets. (OCCLUDER_BEYOND, 0) where none meets any; the first is OCCLUDER_BEYOND too where none enters a shadow,
-// the second where one may stay in it for ever.
+// What is kept of the shadow volumes' boundaries on the screen: view depths [m] a tile of 4 x 4 pixels, between which lies
+// whatever a ray of the tile meets. (OCCLUDER_BEYOND, 0) where none meets any; the first is OCCLUDER_BEYOND too where none
+// enters a shadow, the second where one may stay in it for ever.
 
 const OCCLUDER_TILE: u32 = 4u; // pixels a side
 const OCCLUDER_BEYOND: f32 = 0x1p+100f;

@@ -39,9 +39,9 @@
 //! computed stay below the tolerance times the brightest value in its tile of 8 x 8 pixels. With each frame come up:
 //!
 //! - **the eye's way**. Two cameras' rays to the same point collect integrals of f and f', the in-scattered light by the
-//!   share of the way to that point. The integral of |f - f'| is no less than their difference. A tile estimates it at 128 places
-//!   in strata, shadows and all; three times the tile's mean is taken for each of its pixels. One frame's step is
-//!   too short for few samples to meet with shadow edges: it is followed for 16 frames, and the sum divided by 16. By the
+//!   share of the way to that point. The integral of |f - f'| is no less than their difference. A tile estimates it at 128
+//!   places in strata, shadows and all; three times the tile's mean is taken for each of its pixels. One frame's step is too
+//!   short for few samples to meet with shadow edges: it is followed for 16 frames, and the sum divided by 16. By the
 //!   triangle inequality 16 such frames add up to no less than what they change. Nothing for an eye that only turns.
 //! - **looking up between pixels**. A picture that is straight but for one bend, or one step, between two pixels is missed by
 //!   at most the larger second difference at either; near a pixel by less, 8 a (1 - a) times at the share a of the way. Both
@@ -78,11 +78,10 @@
 //! and depth. Lights through coloured glass are kept only while their maps' `shadow_revision` stays. A camera that moves
 //! takes another 16 bytes a pixel, four looks at the shadow map and twenty at the kept picture.
 //!
-//! Of a dragon that turns, 23 % of the pixels differ from frame to frame, and the mask of change covers 26 %. About `hybrid` a
-//! frame is 1.3 times as fast (`results/lin.txt`): where the picture changes is where the steps are, two thirds of its last
-//! pass, and its volumes are found anew each frame. About `ray-march` it is 2.6 times. Tried: asking the quarters of a tile that
-//! meets a change
-//! covered a thirtieth less and took half as long again to find.
+//! Of a dragon that turns, 23 % of the pixels differ from frame to frame, and the mask of change covers 26 %. About `hybrid`
+//! a frame is 1.3 times as fast (`results/lin.txt`): where the picture changes is where the steps are, two thirds of its
+//! last pass, and its volumes are found anew each frame. About `ray-march` it is 2.6 times. Tried: asking the quarters of a
+//! tile that meets a change covered a thirtieth less and took half as long again to find.
 
 mod gate;
 pub(crate) mod gpu;
