@@ -74,7 +74,7 @@
 //!
 //! # Cost
 //!
-//! 4 bytes a shadow-map texel (what the frame before saw), 12 bytes a pixel and the light's kept picture; one read of map
+//! 4 bytes a shadow-map texel (what the frame before saw), 9 bytes a pixel and the light's kept picture; one read of map
 //! and depth. Lights through coloured glass are kept only while their maps' `shadow_revision` stays. A camera that moves
 //! takes another 16 bytes a pixel, four looks at the shadow map and twenty at the kept picture.
 //!

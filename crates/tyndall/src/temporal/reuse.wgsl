@@ -9,7 +9,7 @@ struct ReuseParams {
     mask: u32, // REUSE_CHANGE or REUSE_GEOMETRY
     margin: f32, // how far from its own ray a pixel looks [pixels]
     reach: u32, // REUSE_RAY or REUSE_PICTURE
-    has_witness: u32, // 1 where the last pass reads a picture besides
+    has_witness: u32, // 1 where the last pass reads tiles besides, see occluder/tile.wgsl
     levels: u32, // of blocks
     kin: u32, // another one whenever more than depth, shadow map and camera has changed; 0: the camera counts as well
     dispatches: array<vec4u, 16>, // workgroups of what decides the mask
