@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
 use tyndall::techniques::Technique;
 
 use crate::{
+    backend::BackendChoice,
     bench::suite_names,
     layer::Layer,
     shot::{FrameRange, Override, technique_names},
@@ -16,7 +17,7 @@ use crate::{
 #[derive(Clone, Debug, Parser)]
 #[command(name = "tyndall", version, after_help = EXAMPLES)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -62,10 +63,10 @@ pub struct RenderArgs {
     /// Override a key of the shot by its dotted path; the value is TOML or a bare word
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<Override>,
-    /// Where to render
+    /// Backend that renders
     #[arg(long, value_name = "B", default_value = "auto")]
     pub backend: BackendChoice,
-    /// What the picture holds; several go into one .exr as named layers
+    /// Content of the picture; several layers go into one .exr by their names
     #[arg(long = "layer", value_name = "L", default_value = "final")]
     pub layers: Vec<Layer>,
     /// Exposure of a .png [EV]: light is multiplied by 2^EV; left out: chosen by the picture's brightness
@@ -104,7 +105,7 @@ pub struct CompareArgs {
     /// The techniques; left out: all that can do the shot's lights
     #[arg(long, value_name = "A,B,..", value_delimiter = ',', value_parser = PossibleValuesParser::new(compared_names()))]
     pub techniques: Vec<String>,
-    /// Where the reference takes its visibility from
+    /// Source of the reference's visibility
     #[arg(long, value_name = "V", default_value = "traced")]
     pub reference: ReferenceChoice,
     /// Folder of the report, made where it is missing; left out: the shot's name with -compare, in this folder
@@ -116,7 +117,7 @@ pub struct CompareArgs {
     /// Override a key of the shot by its dotted path; the value is TOML or a bare word
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<Override>,
-    /// Where techniques run that can run on both; the reference runs on the CPU
+    /// Backend of techniques that run on both; the reference runs on the CPU
     #[arg(long, value_name = "B", default_value = "auto")]
     pub backend: BackendChoice,
 }
@@ -136,7 +137,7 @@ fn compared_names() -> Vec<&'static str> {
     names
 }
 
-/// Where the reference takes its visibility from.
+/// Source of the reference's visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ReferenceChoice {
     /// The scene's triangles
@@ -179,17 +180,6 @@ pub struct ViewArgs {
 pub struct InfoArgs {
     /// A scene (.gltf, .glb or builtin:NAME); left out: the machine and the techniques
     pub scene: Option<PathBuf>,
-}
-
-/// Where to render.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BackendChoice {
-    /// The GPU where there is an adapter and the technique runs there, else the CPU
-    Auto,
-    /// The GPU, or fail
-    Gpu,
-    /// The CPU, with nothing installed
-    Cpu,
 }
 
 fn exposure(text: &str) -> Result<f32, String> {

@@ -1,12 +1,9 @@
-//! What `--stats` writes: what was rendered, where, how, and what each part of it took.
+//! The report of `--stats`: adapter, technique and layers of a render, and the cost of each part of it.
 
 use serde_json::{Map, Value, json};
 use tyndall::techniques::{self, Technique};
 
-use crate::{
-    layer::Layer,
-    render::{AdapterDescription, Rendered},
-};
+use crate::{backend::AdapterDescription, layer::Layer, render::Rendered};
 
 /// A render and its costs.
 pub struct Stats<'a> {
@@ -16,9 +13,9 @@ pub struct Stats<'a> {
     pub technique: &'a Technique,
     /// Width and height [pixels].
     pub size: [u32; 2],
-    /// What was asked for.
+    /// Layers that were asked for.
     pub layers: &'a [Layer],
-    /// What was rendered; of a sequence the last frame.
+    /// The rendered layers; of a sequence those of the last frame.
     pub rendered: &'a Rendered,
     /// The frames of a sequence, in order; empty of a single picture.
     pub frames: &'a [FrameStats],
@@ -36,7 +33,7 @@ pub struct FrameStats {
     pub frame: u32,
     /// GPU passes and their milliseconds, in order.
     pub passes: Vec<(String, f64)>,
-    /// What the technique counts.
+    /// Counts of the technique.
     pub counts: Vec<(String, u64)>,
 }
 

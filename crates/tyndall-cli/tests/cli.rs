@@ -598,7 +598,7 @@ fn area_shot(light: &str) -> String {
     format!("{before}type = \"rect\"\nradiance = [9, 9, 9]\nvpls = 9\n{light}[medium]{medium}")
 }
 
-/// Where a light that looks down hangs.
+/// Place of a light that looks down.
 const PANEL: &str = "center = [0, 3, 0]\nedge_x = [1, 0, 0]\nedge_y = [0, 0, 1]\n";
 
 /// Renders in-scattered light, of frames where they are given, to files of this name.

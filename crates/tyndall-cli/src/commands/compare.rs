@@ -6,13 +6,13 @@ use tyndall::techniques::{Backends, TABLE, Technique, TechniqueInfo};
 
 use crate::{
     args::{CompareArgs, ReferenceChoice},
+    backend::Backend,
     compare::{Comparison, Subject, files, settings},
     failure::Failure,
-    measure::{Stage, Visibility},
+    load::LoadedShot,
+    measure::{DrawnFrame, Visibility},
     output::check_folder,
-    progress::Stages,
-    render::Backend,
-    setup::Setup,
+    progress::Progress,
     shot::Shot,
 };
 
@@ -27,11 +27,11 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
         eprintln!("note: the shot is a sequence; its first frame is compared");
     }
 
-    let mut stages = Stages::default();
+    let mut progress = Progress::default();
     let backend = Backend::choose(args.backend, decisive(&args.techniques))?;
-    let setup = Setup::new(&shot, &mut stages)?;
-    let stage = Stage::new(&setup, &backend, &mut stages)?;
-    let techniques = techniques(args, &shot, &stage)?;
+    let shot_frame = LoadedShot::at_rest(&shot, &mut progress)?.frame(0)?;
+    let drawn = DrawnFrame::new(&shot_frame, &backend, &mut progress)?;
+    let techniques = techniques(args, &shot, &drawn)?;
     let candidates: Vec<_> = techniques.iter().flat_map(settings::candidates).collect();
     files::make_folder(&folder).map_err(Failure::input)?;
 
@@ -46,7 +46,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
         adapter: backend.adapter().cloned(),
         left_out: left_out(args, &techniques),
     };
-    let comparison = Comparison::measure(subject, &stage, &candidates, visibility, &mut stages)?;
+    let comparison = Comparison::measure(subject, &drawn, &candidates, visibility, &mut progress)?;
     let page = files::write(&comparison, &folder).map_err(Failure::input)?;
     eprintln!("wrote {}", page.display());
     if let Some(file) = &args.json {
@@ -77,9 +77,9 @@ fn decisive(names: &[String]) -> &'static TechniqueInfo {
 fn techniques(
     args: &CompareArgs,
     shot: &Shot,
-    stage: &Stage<'_>,
+    drawn: &DrawnFrame<'_>,
 ) -> Result<Vec<Technique>, Failure> {
-    let mut techniques = stage.techniques();
+    let mut techniques = drawn.techniques();
     if !args.techniques.is_empty() {
         for name in &args.techniques {
             if !techniques.iter().any(|t| t.info().name == name) {

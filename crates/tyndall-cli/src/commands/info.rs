@@ -16,7 +16,7 @@ use tyndall_scene::{
 };
 
 use crate::{
-    args::InfoArgs, failure::Failure, render::AdapterDescription, setup::load_scene,
+    args::InfoArgs, backend::AdapterDescription, failure::Failure, load::load_scene,
     shot::SceneSource,
 };
 

@@ -1,4 +1,4 @@
-//! `[[light]]`: what shines, the size of its shadow map, and the picture it shines through.
+//! `[[light]]`: emitters, the size of its shadow map, and the texture it shines through.
 
 use std::{
     f32::consts::FRAC_PI_2,
@@ -18,28 +18,28 @@ use super::{
 /// A light of a shot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightSpec {
-    /// What shines.
+    /// Kind, place and strength.
     pub emitter: Emitter,
     /// Texels of a side of its shadow map, of a face of its cube map, or of a map of each of a rectangle's samples.
     pub shadow_map: u32,
-    /// The picture it shines through.
+    /// The texture it shines through.
     pub texture: Option<TextureSpec>,
 }
 
-/// The picture a light shines through.
+/// The texture a light shines through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureSpec {
     /// The picture file, or the pattern of one a frame (`####` or `%04d`).
     pub file: PathBuf,
-    /// Where the shot names it.
+    /// The place where the shot names it.
     pub location: Location,
-    /// Where it lies.
+    /// Its position in space.
     pub placement: TexturePlacement,
 }
 
 /// Texels of a side of a shadow map that a shot leaves to us: directional and spot lights.
 const DEFAULT_MAP: u32 = 2048;
-/// The same for a face of a point light's cube and for each sample of a rectangular light.
+/// Default texels of a side of a point light's cube face, and of the map of each sample of a rectangular light.
 const DEFAULT_FACE: u32 = 1024;
 const DEFAULT_RECT: u32 = 128;
 /// The most texels a shadow map's side may have.
@@ -181,15 +181,15 @@ fn texture(field: &Field<'_>, emitter: &Emitter, folder: &Path) -> Result<Textur
             TexturePlacement::Rectangle
         }
     };
-    let file = section.require("file", PICTURE)?;
+    let file = section.require("file", TEXTURE_FILE)?;
     Ok(TextureSpec {
-        file: folder.join(file.text(PICTURE)?),
+        file: folder.join(file.text(TEXTURE_FILE)?),
         location: file.location(),
         placement,
     })
 }
 
-const PICTURE: &str = "the path of a .png, .jpg or .exr picture";
+const TEXTURE_FILE: &str = "the path of a .png, .jpg or .exr picture";
 
 fn parallelogram(section: &Section<'_>, light: [f32; 3]) -> Result<TexturePlacement, ShotError> {
     section.only(&["file", "center", "edge_x", "edge_y"])?;

@@ -46,7 +46,7 @@ impl Override {
         self.keys.len() > 1 && self.keys[0] == section
     }
 
-    /// Puts the value in its place. Tables on the way that aren't there are made, items of lists are not.
+    /// Puts the value in its place. Tables of its path that aren't there are made, items of lists are not.
     pub(super) fn apply(&self, file: &Path, root: &mut Table) -> Result<(), ShotError> {
         let mut keys = self.keys.iter();
         let Some(first) = keys.next() else {

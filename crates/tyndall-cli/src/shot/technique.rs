@@ -3,8 +3,8 @@
 use tyndall::techniques::{self, LightKind, ParamError, TABLE, Technique};
 
 use super::{
-    LightSpec,
     error::{Problem, ShotError, one_of, similar},
+    light::LightSpec,
     reader::{Field, Section},
     tree::{Entry, Place, Table, Value},
 };

@@ -1,10 +1,13 @@
 //! Shots that are read, and shots that are refused with the right words.
 
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::OsStr,
+    path::{Path, PathBuf},
+};
 
 use tyndall::{
     frame::{Camera, Emitter, Medium, MediumComponent, Phase, Projection, TexturePlacement},
-    techniques::Value,
+    techniques::{Technique, Value},
 };
 
 use super::*;

@@ -1,12 +1,24 @@
-//! Which backend renders, and why.
+//! The choice of a backend, and the reason for it.
 
+use clap::ValueEnum;
 use tyndall::techniques::{Backends, TechniqueInfo};
 use tyndall_scene::gpu::{NoAdapter, connect};
 
-use super::gpu::DeviceErrors;
-use crate::{args::BackendChoice, failure::Failure};
+use super::{adapter::AdapterDescription, errors::DeviceErrors};
+use crate::failure::Failure;
 
-/// What renders.
+/// The choice of the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum BackendChoice {
+    /// The GPU where there is an adapter and the technique runs there, else the CPU
+    Auto,
+    /// The GPU, or fail
+    Gpu,
+    /// The CPU, with nothing installed
+    Cpu,
+}
+
+/// The CPU or a device.
 pub enum Backend {
     /// All cores of the CPU.
     Cpu,
@@ -20,30 +32,6 @@ pub struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     pub(crate) errors: DeviceErrors,
-}
-
-/// What an adapter says of itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AdapterDescription {
-    /// The adapter's name.
-    pub name: String,
-    /// The driver and its version.
-    pub driver: String,
-    /// The graphics interface.
-    pub api: &'static str,
-}
-
-impl AdapterDescription {
-    /// Asks an adapter.
-    pub fn of(adapter: &wgpu::Adapter) -> Self {
-        let info = adapter.get_info();
-        let driver = format!("{} {}", info.driver, info.driver_info);
-        Self {
-            name: info.name,
-            driver: driver.trim().to_owned(),
-            api: info.backend.to_str(),
-        }
-    }
 }
 
 impl Backend {
