@@ -6,6 +6,7 @@ use glam::Vec3;
 use tyndall::{
     cpu::LightTexture,
     frame::{Camera, Emitter, Frame, Light, Medium},
+    techniques::TechniqueChoice,
 };
 use tyndall_scene::{
     builtin,
@@ -36,6 +37,8 @@ pub struct Setup {
     pub tracer: Arc<LazyTracer>,
     /// The frame. Its lights have shadow projections wherever maps of them can be made.
     pub frame: Frame,
+    /// What computes each of its lights.
+    pub techniques: TechniqueChoice,
     /// What belongs to each of the frame's lights.
     pub lights: Vec<LightSetup>,
     /// Width and height [pixels].
@@ -201,8 +204,8 @@ impl Source {
                 camera: moment.camera,
                 lights: lights.map(|spec| light(spec, extent)).collect(),
                 medium: moment.medium,
-                technique: self.shot.technique.clone(),
             },
+            techniques: self.shot.technique.clone().into(),
             lights: extras
                 .map(|(spec, texture)| LightSetup {
                     map_size: [spec.shadow_map; 2],

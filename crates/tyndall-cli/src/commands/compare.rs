@@ -105,7 +105,7 @@ fn left_out(args: &CompareArgs, techniques: &[Technique]) -> Vec<String> {
     }
     TABLE
         .iter()
-        .filter(|info| !matches!((info.default)(), Technique::Reference(_)))
+        .filter(|info| !info.is_reference)
         .filter(|info| techniques.iter().all(|t| t.info().name != info.name))
         .map(|info| format!("{}: cannot do this shot's lights here", info.name))
         .collect()

@@ -107,7 +107,7 @@ fn write_technique(text: &mut String, info: &TechniqueInfo) -> std::fmt::Result 
         "    runs on {backends}; lights: {}",
         lights.join(", ")
     )?;
-    for param in (info.default)().params() {
+    for param in info.default_technique().params() {
         writeln!(
             text,
             "    technique.{} = {}: {} ({})",

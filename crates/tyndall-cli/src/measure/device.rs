@@ -5,7 +5,7 @@ use std::{borrow::Cow, time::Instant};
 use tyndall::{
     Effect, EffectView, FrameInputs, Occluder,
     frame::{Camera, Frame},
-    techniques::Technique,
+    techniques::{Technique, TechniqueChoice},
 };
 use tyndall_scene::gpu::readback;
 use wgpu::{CommandEncoder, PollType};
@@ -35,6 +35,7 @@ pub(super) struct DeviceStage<'a> {
 pub(super) struct DeviceTechnique<'a> {
     stage: &'a DeviceStage<'a>,
     frame: Frame,
+    techniques: TechniqueChoice,
     occluders: Option<Vec<Occluder<'a>>>,
     view: EffectView,
     /// What the technique is told of the shadow maps, which never change here.
@@ -93,11 +94,12 @@ impl<'a> DeviceStage<'a> {
     ) -> Result<DeviceTechnique<'a>, Failure> {
         let view = self.effect.create_view(&self.gpu.device, self.setup.size);
         let mut setup = Setup::clone(&self.setup);
-        setup.frame.technique = technique.clone();
+        setup.techniques = technique.clone().into();
         Ok(DeviceTechnique {
             stage: self,
             occluders: self.world.occluders(&setup, None, self.gpu)?,
             frame: setup.frame,
+            techniques: setup.techniques,
             view: view.map_err(Failure::device)?,
             shadow_revision: has_stable_maps.then_some(0),
             timestamps: Timestamps::new(&self.gpu.device),
@@ -126,6 +128,7 @@ impl DeviceTechnique<'_> {
         let Self {
             stage,
             frame,
+            techniques,
             occluders,
             view,
             shadow_revision,
@@ -141,7 +144,9 @@ impl DeviceTechnique<'_> {
                 lights: &lights,
             };
             let Gpu { device, queue, .. } = stage.gpu;
-            let prepared = stage.effect.prepare(device, queue, view, &inputs, frame);
+            let prepared = stage
+                .effect
+                .prepare(device, queue, view, &inputs, frame, techniques);
             prepared.map_err(Failure::input)?;
             stage.effect.record(encoder, view, timestamps.timer());
             Ok(())

@@ -93,7 +93,14 @@ impl<'a> Film<'a> {
             let view = &mut take.view;
             let time = timed_frame(gpu, &mut take.timestamps, |encoder, timestamps| {
                 effect
-                    .prepare(device, queue, view, &inputs, &setup.frame)
+                    .prepare(
+                        device,
+                        queue,
+                        view,
+                        &inputs,
+                        &setup.frame,
+                        &setup.techniques,
+                    )
                     .map_err(Failure::input)?;
                 effect.record(encoder, view, timestamps.timer());
                 Ok(())

@@ -4,8 +4,8 @@ use std::{borrow::Cow, cell::OnceCell, time::Instant};
 
 use tyndall::{
     cpu::CpuLightInputs,
-    frame::{Camera, Frame},
-    techniques::{Backends, LightKind, TABLE, Technique, TechniqueInfo, reference},
+    frame::{Camera, LightKind},
+    techniques::{Backends, TABLE, Technique, TechniqueInfo, reference},
 };
 
 use super::{
@@ -118,8 +118,8 @@ impl<'a> Stage<'a> {
         TABLE
             .iter()
             .filter(|info| self.place(info).is_some())
-            .map(|info| (info.default)())
-            .filter(|technique| !matches!(technique, Technique::Reference(_)))
+            .map(|info| info.default_technique())
+            .filter(|technique| !technique.info().is_reference)
             .collect()
     }
 
@@ -274,11 +274,10 @@ impl<'a> Stage<'a> {
                 };
             }
         }
-        let frame = Frame {
-            technique: technique.clone(),
-            ..self.setup.frame.clone()
-        };
-        let pixels = cpu::in_scatter(&self.setup, frame, &buffers.depth, &lights, &|_, _| ())?;
+        let frame = self.setup.frame.clone();
+        let techniques = technique.clone().into();
+        let (setup, depth) = (&self.setup, &buffers.depth);
+        let pixels = cpu::in_scatter(setup, frame, depth, &lights, &techniques, &|_, _| ())?;
         Ok(Picture {
             size: self.setup.size,
             pixels,

@@ -3,6 +3,7 @@
 use tyndall::{
     cpu::{CpuInputs, CpuLightInputs, GlassMap, Progress, ShadowMap},
     frame::{Frame, Light},
+    techniques::TechniqueChoice,
 };
 use tyndall_scene::{shading::shade, trace::GLASS_LAYERS};
 
@@ -22,13 +23,17 @@ pub(super) fn render(
     let maps = LightMaps::trace_all(setup, needs, stages);
     let lights = light_inputs(setup, &maps);
     let in_scatter = if needs.in_scatter {
-        let name = format!("in-scatter by {}", setup.frame.technique.info().name);
+        let name = format!(
+            "in-scatter by {}",
+            super::technique(&setup.techniques).info().name
+        );
         stages.run(&name, |progress| {
             in_scatter(
                 setup,
                 setup.frame.clone(),
                 &g_buffer.depth,
                 &lights,
+                &setup.techniques,
                 progress,
             )
         })?
@@ -160,6 +165,7 @@ pub(crate) fn in_scatter(
     mut frame: Frame,
     depth: &[f32],
     lights: &[CpuLightInputs<'_>],
+    techniques: &TechniqueChoice,
     progress: Progress<'_>,
 ) -> Result<Vec<[f32; 3]>, Failure> {
     for (light, inputs) in frame.lights.iter_mut().zip(lights) {
@@ -171,7 +177,7 @@ pub(crate) fn in_scatter(
         lights,
         occluders: Some(&**setup.tracer),
     };
-    let result = tyndall::cpu::render(&frame, &inputs, progress);
+    let result = tyndall::cpu::render(&frame, &inputs, techniques, progress);
     Ok(rgb(&result.map_err(Failure::input)?.pixels))
 }
 

@@ -11,7 +11,7 @@ use tyndall::{
     camera::CameraRays,
     frame::{Camera, Emitter, Light, Medium},
     physics::medium::Optics,
-    techniques::{Technique, reference},
+    techniques::{Technique, TechniqueChoice, reference},
     temporal::{Reuse, ReuseMask, ReuseShow},
 };
 
@@ -68,7 +68,7 @@ impl<'a> Session<'a> {
         layers: &'a [Layer],
         stages: &mut Stages,
     ) -> Result<Self, Failure> {
-        let needs = Needs::of(layers, &setup.frame.technique);
+        let needs = Needs::of(layers, &technique(&setup.techniques));
         let pipeline = match backend {
             Backend::Cpu => {
                 if temporal.is_some() {
@@ -127,7 +127,7 @@ impl Needs {
     fn of(layers: &[Layer], technique: &Technique) -> Self {
         let any = |wanted: [Layer; 2]| layers.iter().any(|layer| wanted.contains(layer));
         let surface = any([Layer::Final, Layer::Surface]);
-        let surface_shadows = surface && matches!(technique, Technique::ImperfectVoxelized(_));
+        let surface_shadows = surface && technique.info().shadows_surfaces;
         let in_scatter = surface_shadows || any([Layer::Final, Layer::Inscatter]);
         Self {
             in_scatter,
@@ -165,9 +165,14 @@ pub(crate) fn reuse(temporal: &Temporal) -> Reuse {
     }
 }
 
+/// The technique of the shot.
+pub(crate) fn technique(techniques: &TechniqueChoice) -> Technique {
+    techniques.all.clone().unwrap_or_default()
+}
+
 fn reads_occluders(technique: &Technique, reuse: Option<&Reuse>) -> bool {
     let mask = reuse.map(|reuse| reuse.mask);
-    matches!(technique, Technique::Hybrid(_)) || mask == Some(ReuseMask::Geometry)
+    technique.info().reads.occluders || mask == Some(ReuseMask::Geometry)
 }
 
 /// Length of each pixel's view ray [m].

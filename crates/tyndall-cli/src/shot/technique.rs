@@ -1,6 +1,7 @@
 //! `[technique]`: how the integral is computed.
 
-use tyndall::techniques::{self, LightKind, ParamError, TABLE, Technique};
+use tyndall::frame::LightKind;
+use tyndall::techniques::{self, ParamError, TABLE, Technique};
 
 use super::{
     LightSpec,

@@ -151,7 +151,14 @@ impl<'a> Pipeline<'a> {
         let Gpu { device, queue, .. } = self.gpu;
         let view = &mut self.view;
         self.effect
-            .prepare(device, queue, view, &inputs, &setup.frame)
+            .prepare(
+                device,
+                queue,
+                view,
+                &inputs,
+                &setup.frame,
+                &setup.techniques,
+            )
             .map_err(Failure::input)?;
         self.effect
             .record(encoder, &mut self.view, self.timestamps.timer());

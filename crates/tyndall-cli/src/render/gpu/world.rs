@@ -173,7 +173,7 @@ impl World {
         reuse: Option<&Reuse>,
         gpu: &Gpu,
     ) -> Result<Option<Vec<Occluder<'_>>>, Failure> {
-        if !reads_occluders(&setup.frame.technique, reuse) {
+        if !reads_occluders(&super::super::technique(&setup.techniques), reuse) {
             return Ok(None);
         }
         let uploaded = match self.occluders.get() {
