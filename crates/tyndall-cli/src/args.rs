@@ -43,7 +43,7 @@ pub enum Command {
     Bench(BenchArgs),
     /// Open a shot or a scene in a window
     View(ViewArgs),
-    /// List adapters, limits and techniques, or what a scene holds
+    /// List adapters, limits and techniques, or what a scene or a shot holds
     Info(InfoArgs),
 }
 
@@ -57,7 +57,8 @@ pub struct RenderArgs {
     /// The picture: .png is tone-mapped, .exr is linear; left out: the input's name with .png, in this folder
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// The technique; takes the place of the shot's, and of its parameters where it is another one
+    /// The technique of all lights without one of their own; takes the place of the shot's, and of its parameters where it is
+    /// another one
     #[arg(long, value_name = "T", value_parser = PossibleValuesParser::new(technique_names()))]
     pub technique: Option<String>,
     /// Override a key of the shot by its dotted path; the value is TOML or a bare word
@@ -133,7 +134,9 @@ in turn. report.html opens from disk and needs no network; pictures lie beside i
 /// Techniques that can be compared with the reference: all others.
 fn compared_names() -> Vec<&'static str> {
     let mut names = technique_names();
-    names.retain(|name| !matches!(Technique::from_name(name), Some(Technique::Reference(_))));
+    names.retain(|name| {
+        Technique::from_name(name).is_some_and(|technique| !technique.info().is_reference)
+    });
     names
 }
 
@@ -178,8 +181,9 @@ pub struct ViewArgs {
 /// Arguments of `tyndall info`.
 #[derive(Clone, Debug, Args)]
 pub struct InfoArgs {
-    /// A scene (.gltf, .glb or builtin:NAME); left out: the machine and the techniques
-    pub scene: Option<PathBuf>,
+    /// A shot (.toml) or a scene (.gltf, .glb or builtin:NAME); left out: the machine and the techniques
+    #[arg(value_name = "SHOT|SCENE")]
+    pub input: Option<PathBuf>,
 }
 
 fn exposure(text: &str) -> Result<f32, String> {

@@ -9,8 +9,8 @@ use crate::{backend::AdapterDescription, layer::Layer, render::Rendered};
 pub struct Stats<'a> {
     /// The adapter; `None` on the CPU.
     pub adapter: Option<&'a AdapterDescription>,
-    /// The technique.
-    pub technique: &'a Technique,
+    /// The technique of all lights that name none; `None` where the shot leaves it to the lights' kinds.
+    pub technique: Option<&'a Technique>,
     /// Width and height [pixels].
     pub size: [u32; 2],
     /// Layers that were asked for.
@@ -58,6 +58,13 @@ impl Stats<'_> {
     }
 
     fn of_picture(&self) -> Value {
+        let lights = &self.rendered.techniques;
+        let technique = self.technique.or(lights.first()).cloned();
+        let technique = technique.unwrap_or_default();
+        let light = |technique: &Technique| {
+            let name = technique.info().name;
+            json!({ "technique": name, "parameters": parameters(technique) })
+        };
         json!({
             "tyndall": env!("CARGO_PKG_VERSION"),
             "command": self.command,
@@ -67,8 +74,9 @@ impl Stats<'_> {
                 "driver": adapter.driver,
                 "backend": adapter.api,
             })),
-            "technique": self.technique.info().name,
-            "parameters": parameters(self.technique),
+            "technique": technique.info().name,
+            "parameters": parameters(&technique),
+            "lights": lights.iter().map(light).collect::<Vec<_>>(),
             "size": self.size,
             "layers": self.layers.iter().map(|layer| layer.name()).collect::<Vec<_>>(),
             "passes": times(&self.rendered.passes),

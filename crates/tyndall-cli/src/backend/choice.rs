@@ -35,32 +35,51 @@ pub struct Gpu {
 }
 
 impl Backend {
-    /// Chooses where to render with this technique, and says on standard error what was taken and why.
+    /// Chooses where to render with these techniques, and says on standard error what was taken and why.
     ///
     /// # Errors
-    /// [`Failure::Usage`] where the technique doesn't run where it is asked to,
-    /// [`Failure::Device`] where it needs a device and there is none.
-    pub fn choose(choice: BackendChoice, technique: &TechniqueInfo) -> Result<Self, Failure> {
-        let name = technique.name;
-        match (choice, technique.backends) {
-            (BackendChoice::Cpu, Backends::Gpu) => Err(Failure::Usage(anyhow::anyhow!(
+    /// [`Failure::Usage`] where a technique doesn't run where it is asked to, or no backend runs all of them,
+    /// [`Failure::Device`] where one needs a device and there is none.
+    pub fn choose(
+        choice: BackendChoice,
+        techniques: &[&'static TechniqueInfo],
+    ) -> Result<Self, Failure> {
+        let on = |backends| techniques.iter().find(|info| info.backends == backends);
+        let name = |info: &&TechniqueInfo| info.name;
+        match (
+            choice,
+            on(Backends::Cpu).map(name),
+            on(Backends::Gpu).map(name),
+        ) {
+            (BackendChoice::Cpu, _, Some(name)) => Err(Failure::Usage(anyhow::anyhow!(
                 "technique {name} runs on the GPU only, not with --backend cpu"
             ))),
-            (BackendChoice::Gpu, Backends::Cpu) => Err(Failure::Usage(anyhow::anyhow!(
+            (BackendChoice::Gpu, Some(name), _) => Err(Failure::Usage(anyhow::anyhow!(
                 "technique {name} runs on the CPU only, not with --backend gpu"
             ))),
-            (BackendChoice::Cpu, _) => Ok(Self::cpu("as asked")),
-            (BackendChoice::Auto, Backends::Cpu) => {
+            (BackendChoice::Auto, Some(cpu), Some(gpu)) => Err(Failure::Usage(anyhow::anyhow!(
+                "technique {cpu} runs on the CPU only, and {gpu} on the GPU only"
+            ))),
+            (BackendChoice::Cpu, ..) => Ok(Self::cpu("as asked")),
+            (BackendChoice::Auto, Some(name), None) => {
                 Ok(Self::cpu(&format!("technique {name} runs there only")))
             }
-            (BackendChoice::Gpu, _) => Self::gpu("as asked").map_err(Failure::device),
-            (BackendChoice::Auto, Backends::Gpu) => {
+            (BackendChoice::Gpu, ..) => Self::gpu("as asked").map_err(Failure::device),
+            (BackendChoice::Auto, None, Some(name)) => {
                 Self::gpu(&format!("technique {name} runs there only")).map_err(Failure::device)
             }
-            (BackendChoice::Auto, Backends::Both) => match Self::gpu("there is an adapter") {
+            (BackendChoice::Auto, None, None) => match Self::gpu("there is an adapter") {
                 Err(NoAdapter::Adapter(_)) => Ok(Self::cpu("there is no graphics adapter")),
                 found => found.map_err(Failure::device),
             },
+        }
+    }
+
+    /// This backend among those of a technique: [`Backends::Cpu`] or [`Backends::Gpu`].
+    pub fn side(&self) -> Backends {
+        match self {
+            Self::Cpu => Backends::Cpu,
+            Self::Gpu(_) => Backends::Gpu,
         }
     }
 

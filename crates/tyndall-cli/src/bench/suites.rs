@@ -143,7 +143,7 @@ pub(crate) fn run(
         check_folder(file).map_err(Failure::input)?;
     }
     let bench = Bench {
-        backend: Backend::choose(BackendChoice::Auto, Technique::default().info())?,
+        backend: Backend::choose(BackendChoice::Auto, &[Technique::default().info()])?,
         assets: assets.map(Path::to_owned).or_else(find_assets),
     };
     let header = header(&bench);

@@ -47,7 +47,7 @@ fn row<'a>(table: &'a Value, technique: &str) -> &'a Value {
 #[test]
 fn a_paper_gets_its_tables_and_what_is_missing_is_named() {
     let choice = BackendChoice::Auto;
-    let bench = bench(Backend::choose(choice, Technique::default().info()).unwrap());
+    let bench = bench(Backend::choose(choice, &[Technique::default().info()]).unwrap());
     let report = paper::run(&TINY, &bench, &mut Progress::default()).unwrap();
     assert_eq!(report.missing, ["sleight-of-hand"]);
     let json: Vec<Value> = report.tables.iter().map(Table::to_json).collect();
@@ -114,7 +114,7 @@ fn a_report_says_what_it_is_and_what_is_missing() {
 #[test]
 fn no_place_makes_min_max_as_wrong_as_brute_force() {
     let bench = Bench {
-        backend: Backend::choose(BackendChoice::Auto, Technique::default().info()).unwrap(),
+        backend: Backend::choose(BackendChoice::Auto, &[Technique::default().info()]).unwrap(),
         assets: subject::find_assets(),
     };
     if bench.assets.is_none() {
@@ -169,7 +169,7 @@ fn light_volumes_are_measured_by_mesh_and_map() {
 
 #[test]
 fn reuse_is_timed_and_what_is_left_stale_is_counted() {
-    let backend = Backend::choose(BackendChoice::Auto, Technique::default().info()).unwrap();
+    let backend = Backend::choose(BackendChoice::Auto, &[Technique::default().info()]).unwrap();
     let is_gpu = matches!(backend, Backend::Gpu(_));
     let films = lin::Films {
         scenes: &[(subject::YEAH_RIGHT, "1.10")],

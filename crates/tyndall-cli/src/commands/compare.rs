@@ -26,9 +26,13 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
     if shot.temporal.is_some() || shot.animation.is_some() {
         eprintln!("note: the shot is a sequence; its first frame is compared");
     }
+    let mut lights = shot.lights.iter().flatten();
+    if lights.any(|light| light.technique.is_some()) {
+        eprintln!("note: each technique computes all lights, whatever technique a light names");
+    }
 
     let mut progress = Progress::default();
-    let backend = Backend::choose(args.backend, decisive(&args.techniques))?;
+    let backend = Backend::choose(args.backend, &[decisive(&args.techniques)])?;
     let shot_frame = LoadedShot::at_rest(&shot, &mut progress)?.frame(0)?;
     let drawn = DrawnFrame::new(&shot_frame, &backend, &mut progress)?;
     let techniques = techniques(args, &shot, &drawn)?;
@@ -91,8 +95,9 @@ fn techniques(
         techniques.retain(|t| args.techniques.iter().any(|name| name == t.info().name));
     }
     for technique in &mut techniques {
-        if technique.info().name == shot.technique.info().name {
-            *technique = shot.technique.clone();
+        let own = shot.technique.as_ref();
+        if let Some(own) = own.filter(|own| own.info().name == technique.info().name) {
+            *technique = own.clone();
         }
     }
     Ok(techniques)
@@ -105,7 +110,7 @@ fn left_out(args: &CompareArgs, techniques: &[Technique]) -> Vec<String> {
     }
     TABLE
         .iter()
-        .filter(|info| !matches!((info.default)(), Technique::Reference(_)))
+        .filter(|info| !info.is_reference)
         .filter(|info| techniques.iter().all(|t| t.info().name != info.name))
         .map(|info| format!("{}: cannot do this shot's lights here", info.name))
         .collect()

@@ -68,7 +68,7 @@ impl<'a> Job<'a> {
     }
 
     fn backend(&self) -> Result<Backend, Failure> {
-        Backend::choose(self.args.backend, self.shot.technique.info())
+        Backend::choose(self.args.backend, &self.shot.named_techniques())
     }
 
     fn render_picture(&self) -> Result<(), Failure> {
@@ -183,7 +183,7 @@ impl<'a> Job<'a> {
         };
         let stats = Stats {
             adapter: backend.adapter(),
-            technique: &self.shot.technique,
+            technique: self.shot.technique.as_ref(),
             size: self.shot.size,
             layers: &self.layers,
             rendered,

@@ -142,12 +142,16 @@ mod tests {
     #[test]
     fn every_technique_is_compared_and_no_two_share_a_label() {
         for info in TABLE {
-            let candidates = candidates(&(info.default)());
+            let candidates = candidates(&info.default_technique());
             let mut labels: Vec<String> = candidates.iter().map(|c| c.setting.label()).collect();
             labels.sort();
             labels.dedup();
             assert_eq!(labels.len(), candidates.len());
-            assert!(candidates.iter().any(|c| c.technique == (info.default)()));
+            assert!(
+                candidates
+                    .iter()
+                    .any(|c| c.technique == info.default_technique())
+            );
         }
     }
 

@@ -2,7 +2,11 @@
 
 use std::sync::{Arc, LazyLock};
 
-use tyndall::{cpu::LightTexture, frame::Frame};
+use tyndall::{
+    cpu::LightTexture,
+    frame::Frame,
+    techniques::{Backends, Technique, TechniqueChoice},
+};
 use tyndall_scene::{scene::Scene, trace::Tracer};
 
 /// One frame of a shot: everything it names is loaded, everything it leaves out filled in. Clones share the scene.
@@ -14,10 +18,22 @@ pub struct ShotFrame {
     pub tracer: Arc<LazyTracer>,
     /// Camera, lights and medium. Lights have shadow projections wherever maps of them can be made.
     pub frame: Frame,
+    /// The techniques that compute the lights.
+    pub techniques: TechniqueChoice,
     /// Shadow map and texture of each of the frame's lights.
     pub lights: Vec<LightExtras>,
     /// Width and height [pixels].
     pub size: [u32; 2],
+}
+
+impl ShotFrame {
+    /// The technique of each light on a backend, [`Backends::Cpu`] or [`Backends::Gpu`].
+    pub fn techniques_on(&self, backend: Backends) -> Vec<Technique> {
+        let lights = self.frame.lights.iter().enumerate();
+        lights
+            .map(|(index, light)| self.techniques.of(index, light, backend))
+            .collect()
+    }
 }
 
 /// A tracer that is built when the first ray is cast: frames that the GPU draws cast none.

@@ -6,6 +6,7 @@ use glam::Vec3;
 use tyndall::{
     cpu::LightTexture,
     frame::{Camera, Emitter, Frame, Light, Medium},
+    techniques::{Technique, TechniqueChoice},
 };
 use tyndall_scene::{
     framing::{self, Framing},
@@ -141,8 +142,8 @@ impl LoadedShot {
                     .map(|spec| light(spec, extent))
                     .collect(),
                 medium: parts.medium,
-                technique: self.shot.technique.clone(),
             },
+            techniques: techniques(self.shot.technique.clone(), &parts.lights),
             tracer: self.tracer_of(&scene),
             scene,
             size: self.shot.size,
@@ -203,6 +204,15 @@ fn current(framing: &Framing, scene: &Scene, cameras: &[(String, Camera)]) -> Fr
         },
         medium: framing.medium.clone(),
     }
+}
+
+/// The shot's technique, and the lights' own.
+fn techniques(all: Option<Technique>, lights: &[LightSpec]) -> TechniqueChoice {
+    let mut lights: Vec<_> = lights.iter().map(|light| light.technique.clone()).collect();
+    // A list without any leaves whoever changes the lights free to remove some.
+    let own = lights.iter().rposition(Option::is_some);
+    lights.truncate(own.map_or(0, |last| last + 1));
+    TechniqueChoice { all, lights }
 }
 
 fn aspect(shot: &Shot) -> f32 {

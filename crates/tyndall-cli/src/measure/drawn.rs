@@ -4,8 +4,8 @@ use std::{borrow::Cow, cell::OnceCell};
 
 use tyndall::{
     cpu::CpuLightInputs,
-    frame::{Camera, Frame},
-    techniques::{Backends, LightKind, TABLE, Technique, TechniqueInfo, reference},
+    frame::{Camera, LightKind},
+    techniques::{Backends, TABLE, Technique, TechniqueInfo, reference},
 };
 
 use super::{Visibility, limit::Limit, place::Place};
@@ -104,8 +104,8 @@ impl<'a> DrawnFrame<'a> {
         TABLE
             .iter()
             .filter(|info| self.place(info).is_some())
-            .map(|info| (info.default)())
-            .filter(|technique| !matches!(technique, Technique::Reference(_)))
+            .map(TechniqueInfo::default_technique)
+            .filter(|technique| !technique.info().is_reference)
             .collect()
     }
 
@@ -163,7 +163,12 @@ impl<'a> DrawnFrame<'a> {
     /// A technique on the device, once it has rendered a frame.
     fn rendered(&self, device: &OnDevice<'a>, technique: &Technique) -> Result<TimedView, Failure> {
         let options = ViewOptions::default();
-        let mut view = TimedView::new(&device.shot, &self.shot_frame, technique, options)?;
+        let mut view = TimedView::new(
+            &device.shot,
+            &self.shot_frame,
+            &technique.clone().into(),
+            options,
+        )?;
         view.frame(&device.shot, &self.shot_frame)?;
         Ok(view)
     }
@@ -191,7 +196,7 @@ impl<'a> DrawnFrame<'a> {
     pub fn in_scatter_on_cpu(&self, technique: &Technique) -> Result<Picture, Failure> {
         let buffers = self.buffers()?;
         let mut lights = cpu::light_inputs(&self.shot_frame, &buffers.lights);
-        if !TechniqueInputs::of(technique).light_maps {
+        if !TechniqueInputs::of(std::slice::from_ref(technique)).shadow_maps {
             for light in &mut lights {
                 *light = CpuLightInputs {
                     texture: light.texture,
@@ -199,11 +204,9 @@ impl<'a> DrawnFrame<'a> {
                 };
             }
         }
-        let frame = Frame {
-            technique: technique.clone(),
-            ..self.shot_frame.frame.clone()
-        };
-        let pixels = cpu::in_scatter(&self.shot_frame, frame, &buffers.depth, &lights, &|_, _| ())?;
+        let (shot_frame, depth) = (&self.shot_frame, &buffers.depth);
+        let techniques = technique.clone().into();
+        let pixels = cpu::in_scatter(shot_frame, &techniques, depth, &lights, &|_, _| ())?;
         Ok(Picture {
             size: self.shot_frame.size,
             pixels,

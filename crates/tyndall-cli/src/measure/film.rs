@@ -1,4 +1,4 @@
-//! A shot's frames by one technique, with several kinds of reuse in turn.
+//! A shot's frames by its techniques, with several kinds of reuse in turn.
 
 use tyndall::temporal::Reuse;
 
@@ -45,7 +45,7 @@ impl<'a> Film<'a> {
                 reuse: *reuse,
                 tracks_maps: true,
             };
-            TimedView::new(&shot, &first, &first.frame.technique, options)
+            TimedView::new(&shot, &first, &first.techniques, options)
         };
         Ok(Self {
             takes: takes.iter().map(take).collect::<Result<_, _>>()?,

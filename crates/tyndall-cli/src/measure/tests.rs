@@ -21,7 +21,7 @@ pub(super) fn shot_frame() -> ShotFrame {
 }
 
 fn backend(choice: BackendChoice) -> Backend {
-    Backend::choose(choice, ray_march(1).info()).unwrap()
+    Backend::choose(choice, &[ray_march(1).info()]).unwrap()
 }
 
 pub(crate) fn gpu_or_skip(what: &str) -> Option<Backend> {

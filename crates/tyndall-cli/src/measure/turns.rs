@@ -82,7 +82,12 @@ impl DrawnFrame<'_> {
                     reuse: None,
                     tracks_maps: has_stable_maps,
                 };
-                let view = TimedView::new(&device.shot, &self.shot_frame, technique, options)?;
+                let view = TimedView::new(
+                    &device.shot,
+                    &self.shot_frame,
+                    &technique.clone().into(),
+                    options,
+                )?;
                 Contender::Gpu(self, device, Box::new(view))
             }
             None => {

@@ -1,9 +1,6 @@
 //! Depth buffer and light maps in main memory: traced, or read back from a device.
 
-use tyndall::{
-    cpu::{GlassMap, ShadowMap},
-    frame::Light,
-};
+use tyndall::cpu::{GlassMap, ShadowMap};
 use tyndall_scene::trace::GLASS_LAYERS;
 
 use super::needs::Needs;
@@ -48,16 +45,11 @@ impl LightMaps {
         needs: Needs,
         progress: &mut Progress,
     ) -> Vec<Self> {
-        let lights = shot_frame
-            .frame
-            .lights
-            .iter()
-            .zip(&shot_frame.lights)
-            .enumerate();
+        let lights = 0..shot_frame.lights.len();
         lights
-            .map(|(index, (light, extra))| {
-                if needs.light_maps {
-                    Self::trace(shot_frame, index, light, extra.map_size, progress)
+            .map(|index| {
+                if needs.shadow_maps {
+                    Self::trace(shot_frame, index, needs, progress)
                 } else {
                     Self::default()
                 }
@@ -65,13 +57,9 @@ impl LightMaps {
             .collect()
     }
 
-    fn trace(
-        shot_frame: &ShotFrame,
-        index: usize,
-        light: &Light,
-        size: [u32; 2],
-        progress: &mut Progress,
-    ) -> Self {
+    fn trace(shot_frame: &ShotFrame, index: usize, needs: Needs, progress: &mut Progress) -> Self {
+        let light = &shot_frame.frame.lights[index];
+        let size = shot_frame.lights[index].map_size;
         let Some(projection) = &light.shadow else {
             return Self::default();
         };
@@ -79,7 +67,7 @@ impl LightMaps {
         let shadow_map = progress.run(&format!("trace shadow map {index}"), |report| {
             tracer.shadow_map(emitter, projection, size, report)
         });
-        let glass = tracer.has_tinted_glass().then(|| {
+        let glass = (needs.glass && tracer.has_tinted_glass()).then(|| {
             progress.run(&format!("trace glass map {index}"), |report| {
                 tracer.glass_map(emitter, projection, size, GLASS_LAYERS, report)
             })

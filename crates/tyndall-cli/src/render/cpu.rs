@@ -2,7 +2,7 @@
 
 use tyndall::{
     cpu::{CpuInputs, CpuLightInputs},
-    frame::Frame,
+    techniques::{Backends, TechniqueChoice},
 };
 use tyndall_scene::shading::shade;
 
@@ -28,15 +28,10 @@ pub(super) fn render(
     let maps = LightMaps::trace_all(shot_frame, needs, progress);
     let lights = light_inputs(shot_frame, &maps);
     let in_scatter = if needs.in_scatter {
-        let name = format!("in-scatter by {}", shot_frame.frame.technique.info().name);
+        let name = format!("in-scatter by {}", names(shot_frame));
         progress.run(&name, |report| {
-            in_scatter(
-                shot_frame,
-                shot_frame.frame.clone(),
-                &g_buffer.depth,
-                &lights,
-                report,
-            )
+            let techniques = &shot_frame.techniques;
+            in_scatter(shot_frame, techniques, &g_buffer.depth, &lights, report)
         })?
     } else {
         Vec::new()
@@ -70,6 +65,7 @@ pub(super) fn render(
             .iter()
             .map(|&layer| (layer, picture(layer)))
             .collect(),
+        techniques: shot_frame.techniques_on(Backends::Cpu),
         passes: Vec::new(),
         bytes: vec![("light maps", maps.iter().map(LightMaps::bytes).sum())],
         counts: Vec::new(),
@@ -94,11 +90,12 @@ pub(crate) fn light_inputs<'a>(
 /// In-scattered light [W/(m^2 sr)]. A light whose map isn't among `lights` promises none.
 pub(crate) fn in_scatter(
     shot_frame: &ShotFrame,
-    mut frame: Frame,
+    techniques: &TechniqueChoice,
     depth: &[f32],
     lights: &[CpuLightInputs<'_>],
     report: tyndall::cpu::Progress<'_>,
 ) -> Result<Vec<[f32; 3]>, Failure> {
+    let mut frame = shot_frame.frame.clone();
     for (light, inputs) in frame.lights.iter_mut().zip(lights) {
         light.shadow = light.shadow.filter(|_| inputs.shadow_map.is_some());
     }
@@ -108,8 +105,19 @@ pub(crate) fn in_scatter(
         lights,
         occluders: Some(&**shot_frame.tracer),
     };
-    let result = tyndall::cpu::render(&frame, &inputs, report);
+    let result = tyndall::cpu::render(&frame, &inputs, techniques, report);
     Ok(rgb(&result.map_err(Failure::input)?.pixels))
+}
+
+/// Names of the lights' techniques, each once.
+fn names(shot_frame: &ShotFrame) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for technique in shot_frame.techniques_on(Backends::Cpu) {
+        if !names.contains(&technique.info().name) {
+            names.push(technique.info().name);
+        }
+    }
+    names.join(" and ")
 }
 
 /// surface * transmittance + in-scatter, in double precision.

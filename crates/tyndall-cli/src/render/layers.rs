@@ -4,6 +4,7 @@ use tyndall::{
     camera::CameraRays,
     frame::{Camera, Medium},
     physics::medium::Optics,
+    techniques::Technique,
 };
 
 use crate::{
@@ -16,6 +17,8 @@ use crate::{
 pub struct Rendered {
     /// The layers, in the order they were asked for.
     pub layers: Layers,
+    /// The technique that computed each light, in the lights' order.
+    pub techniques: Vec<Technique>,
     /// GPU passes and their milliseconds, in order; empty on the CPU and without timestamps.
     pub passes: Vec<(String, f64)>,
     /// Textures and buffers, by what they are for [bytes].

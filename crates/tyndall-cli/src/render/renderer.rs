@@ -48,7 +48,7 @@ impl<'a> Renderer<'a> {
         layers: &'a [Layer],
         progress: &mut Progress,
     ) -> Result<Self, Failure> {
-        let needs = Needs::of(layers, &shot_frame.frame.technique);
+        let needs = Needs::of(layers, &shot_frame.techniques_on(backend.side()));
         let gpu = match backend {
             Backend::Cpu => {
                 if temporal.is_some() {

@@ -6,8 +6,8 @@ use std::{
 };
 
 use tyndall::{
-    frame::{Emitter, Medium},
-    techniques::Technique,
+    frame::{Emitter, LightKind, Medium},
+    techniques::{TABLE, Technique, TechniqueInfo},
 };
 
 use super::{
@@ -40,8 +40,8 @@ pub struct Shot {
     pub lights: Option<Vec<LightSpec>>,
     /// The medium; `None`: one that suits the scene's size.
     pub medium: Option<Medium>,
-    /// The technique that computes the integral.
-    pub technique: Technique,
+    /// The technique that computes every light without one of its own; `None`: the first of the table that can do it.
+    pub technique: Option<Technique>,
     /// Reuse of earlier frames, in sequences.
     pub temporal: Option<Temporal>,
     /// Movements, in sequences.
@@ -149,10 +149,10 @@ impl Shot {
                     path: "camera".to_owned(),
                 }),
             },
-            technique: technique::read(
-                section.get("technique").as_ref(),
-                lights.as_deref().unwrap_or_default(),
-            )?,
+            technique: section
+                .get("technique")
+                .map(|field| technique::read(&field, &kinds(lights.as_deref())))
+                .transpose()?,
             lights,
             medium: section
                 .get("medium")
@@ -168,6 +168,17 @@ impl Shot {
                 .transpose()?,
             deferred,
         })
+    }
+
+    /// Every technique that the shot names, in `[technique]` and of its lights.
+    pub fn named_techniques(&self) -> Vec<&'static TechniqueInfo> {
+        let lights = self.lights.iter().flatten();
+        let own = lights.filter_map(|light| light.technique.as_ref());
+        let named = self.technique.iter().chain(own);
+        // Lights that are left to the scene get theirs from the command line.
+        let deferred = self.deferred.iter().filter_map(Override::light_technique);
+        let deferred = deferred.filter_map(|name| TABLE.iter().find(|info| info.name == name));
+        named.map(Technique::info).chain(deferred).collect()
     }
 
     /// Default name of this shot's pictures: the shot's or the scene's name.
@@ -199,6 +210,15 @@ impl Shot {
         }
         Ok(root)
     }
+}
+
+/// Kinds of the lights that have no technique of their own.
+fn kinds(lights: Option<&[LightSpec]>) -> Vec<LightKind> {
+    let lights = lights.unwrap_or_default().iter();
+    lights
+        .filter(|light| light.technique.is_none())
+        .map(|light| LightKind::of(&light.emitter))
+        .collect()
 }
 
 fn folder(file: &Path) -> &Path {

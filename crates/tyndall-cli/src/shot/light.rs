@@ -1,4 +1,4 @@
-//! `[[light]]`: emitters, the size of its shadow map, and the texture it shines through.
+//! `[[light]]`: an emitter, the size of its shadow map, the texture it shines through, and its own technique.
 
 use std::{
     f32::consts::FRAC_PI_2,
@@ -7,11 +7,15 @@ use std::{
 };
 
 use glam::Vec3;
-use tyndall::frame::{Emitter, TexturePlacement};
+use tyndall::{
+    frame::{Emitter, LightKind, TexturePlacement},
+    techniques::Technique,
+};
 
 use super::{
     error::{Location, Problem, ShotError},
     reader::{Field, Section},
+    technique,
     tree::{Entry, Value},
 };
 
@@ -24,6 +28,8 @@ pub struct LightSpec {
     pub shadow_map: u32,
     /// The texture it shines through.
     pub texture: Option<TextureSpec>,
+    /// Its own technique; `None`: the shot's.
+    pub technique: Option<Technique>,
 }
 
 /// The texture a light shines through.
@@ -48,7 +54,7 @@ const MAX_SAMPLES: u32 = 1024;
 const DEFAULT_SAMPLES: u32 = 256;
 
 const KINDS: [&str; 4] = ["directional", "point", "spot", "rect"];
-const COMMON: [&str; 3] = ["type", "shadow_map", "texture"];
+const COMMON: [&str; 4] = ["type", "shadow_map", "texture", "technique"];
 /// Sine of the smallest angle between a texture's `up` and the axis it turns about, or between a parallelogram's edges.
 const LEAST_SINE: f32 = 1e-4;
 
@@ -80,6 +86,10 @@ fn read(field: &Field<'_>, folder: &Path) -> Result<LightSpec, ShotError> {
         texture: section
             .get("texture")
             .map(|field| texture(&field, &emitter, folder))
+            .transpose()?,
+        technique: section
+            .get("technique")
+            .map(|field| technique::read_own(&field, LightKind::of(&emitter)))
             .transpose()?,
     })
 }

@@ -1,10 +1,12 @@
 //! A shot on a device: all commands render its frames by this code.
 //!
 //! [`DeviceShot`] holds everything that the techniques share: the scene, light maps, G-buffer and the effect.
-//! [`DeviceView`] is a technique on it, with the textures that it works on.
+//! [`DeviceView`] is a choice of techniques on it, with the textures that they work on.
 
 use tyndall::{
-    Effect, EffectView, FrameInputs, Occluder, frame::Frame, gpu::PassTimer, techniques::Technique,
+    Effect, EffectView, FrameInputs, Occluder,
+    gpu::PassTimer,
+    techniques::{Backends, TechniqueChoice},
     temporal::Reuse,
 };
 use tyndall_scene::gpu::readback;
@@ -30,9 +32,9 @@ pub(crate) struct DeviceShot<'a> {
     effect: Effect,
 }
 
-/// A technique with the textures it works on.
+/// The techniques of a shot's lights with the textures they work on.
 pub(crate) struct DeviceView {
-    technique: Technique,
+    techniques: TechniqueChoice,
     options: ViewOptions,
     view: EffectView,
 }
@@ -61,14 +63,14 @@ impl<'a> DeviceShot<'a> {
         })
     }
 
-    /// Makes the textures of a technique.
+    /// Makes the textures of techniques.
     ///
     /// # Errors
     /// [`Failure::Device`] where the GPU fails.
     pub(crate) fn view(
         &self,
         shot_frame: &ShotFrame,
-        technique: &Technique,
+        techniques: &TechniqueChoice,
         options: ViewOptions,
     ) -> Result<DeviceView, Failure> {
         let view = self.effect.create_view(&self.gpu.device, shot_frame.size);
@@ -77,7 +79,7 @@ impl<'a> DeviceShot<'a> {
         let shadows = self.needs.surface_shadows;
         view.set_surface_shadows(shadows.then(|| self.world.surface_shadows()));
         Ok(DeviceView {
-            technique: technique.clone(),
+            techniques: techniques.clone(),
             options,
             view,
         })
@@ -104,7 +106,7 @@ impl<'a> DeviceShot<'a> {
         self.world.draw_g_buffer(shot_frame, encoder, timer);
     }
 
-    /// The scene's triangles where they are in a frame, where the technique of a view reads them.
+    /// The scene's triangles where they are in a frame, where a technique of the view reads them.
     ///
     /// # Errors
     /// [`Failure::Device`] where they cannot be uploaded.
@@ -113,7 +115,11 @@ impl<'a> DeviceShot<'a> {
         view: &DeviceView,
         shot_frame: &ShotFrame,
     ) -> Result<Option<Vec<Occluder<'_>>>, Failure> {
-        reads_occluders(&view.technique, view.options.reuse.as_ref())
+        let lights = shot_frame.frame.lights.iter().enumerate();
+        let techniques: Vec<_> = lights
+            .map(|(index, light)| view.techniques.of(index, light, Backends::Gpu))
+            .collect();
+        reads_occluders(&techniques, view.options.reuse.as_ref())
             .then(|| self.world.occluders(shot_frame, self.gpu))
             .transpose()
     }
@@ -142,13 +148,13 @@ impl<'a> DeviceShot<'a> {
             depth: self.world.g_buffer().depth_view(),
             lights: &lights,
         };
-        let frame = Frame {
-            technique: view.technique.clone(),
-            ..shot_frame.frame.clone()
-        };
-        let view = &mut view.view;
-        let prepared = self.effect.prepare(device, queue, view, &inputs, &frame);
-        prepared.map_err(Failure::input)?;
+        let DeviceView {
+            techniques, view, ..
+        } = view;
+        let frame = &shot_frame.frame;
+        self.effect
+            .prepare(device, queue, view, &inputs, frame, techniques)
+            .map_err(Failure::input)?;
         self.effect.record(encoder, view, timer);
         Ok(())
     }

@@ -44,14 +44,14 @@ impl LightTargets {
     ) -> Result<Self, Failure> {
         let device = &gpu.device;
         let (light, extra) = (&shot_frame.frame.lights[index], &shot_frame.lights[index]);
-        let projection = light.shadow.as_ref().filter(|_| needs.light_maps);
+        let projection = light.shadow.as_ref().filter(|_| needs.shadow_maps);
         let shadow_map = projection
             .map(|projection| ShadowMapTarget::new(device, projection, extra.map_size))
             .transpose()
             .map_err(Failure::device)?;
         let glass = shadow_map
             .as_ref()
-            .filter(|_| renderer.has_tinted_glass())
+            .filter(|_| needs.glass && renderer.has_tinted_glass())
             .map(|shadow_map| GlassMapTarget::new(device, shadow_map))
             .transpose()
             .map_err(Failure::device)?;
@@ -85,7 +85,7 @@ impl LightTargets {
 
     /// Whether there is a shadow map where the light needs one.
     pub(super) fn suits(&self, light: &Light, needs: Needs) -> bool {
-        self.shadow_map.is_some() == (light.shadow.is_some() && needs.light_maps)
+        self.shadow_map.is_some() == (light.shadow.is_some() && needs.shadow_maps)
     }
 
     pub(super) fn bytes(&self) -> u64 {

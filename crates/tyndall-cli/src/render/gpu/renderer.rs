@@ -1,6 +1,6 @@
 //! Rendering on the GPU: an engine in small that hands the library its depth buffer and its shadow maps.
 
-use tyndall::temporal::Reuse;
+use tyndall::{techniques::Backends, temporal::Reuse};
 use tyndall_scene::gpu::readback;
 use wgpu::Texture;
 
@@ -49,7 +49,7 @@ impl<'a> GpuRenderer<'a> {
             let shot = DeviceShot::new(shot_frame, gpu, needs)?;
             let format = target_format(&gpu.device);
             Ok(Self {
-                view: shot.view(shot_frame, &shot_frame.frame.technique, options)?,
+                view: shot.view(shot_frame, &shot_frame.techniques, options)?,
                 color: ColorTarget::new(&gpu.device, shot_frame.size, format),
                 timestamps: Timestamps::new(&gpu.device),
                 gpu,
@@ -95,6 +95,7 @@ impl<'a> GpuRenderer<'a> {
                 .iter()
                 .map(|&layer| (layer, picture(layer)))
                 .collect(),
+            techniques: shot_frame.techniques_on(Backends::Gpu),
             passes: self.timestamps.read(&self.gpu.device, &self.gpu.queue)?,
             bytes: self.bytes(),
             counts: self.view.counts(self.gpu)?,

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use tyndall::techniques::Technique;
+use tyndall::techniques::TechniqueChoice;
 use wgpu::{CommandEncoder, PollType};
 
 use super::{
@@ -45,30 +45,30 @@ impl FrameTime {
     }
 }
 
-/// A technique on a device whose frames are timed.
+/// Techniques on a device whose frames are timed.
 pub(crate) struct TimedView {
     pub(crate) view: DeviceView,
     timestamps: Timestamps,
 }
 
 impl TimedView {
-    /// Makes the technique's textures.
+    /// Makes the techniques' textures.
     ///
     /// # Errors
     /// [`Failure::Device`] where the GPU fails.
     pub(crate) fn new(
         shot: &DeviceShot<'_>,
         shot_frame: &ShotFrame,
-        technique: &Technique,
+        techniques: &TechniqueChoice,
         options: ViewOptions,
     ) -> Result<Self, Failure> {
         Ok(Self {
-            view: shot.view(shot_frame, technique, options)?,
+            view: shot.view(shot_frame, techniques, options)?,
             timestamps: Timestamps::new(&shot.gpu.device),
         })
     }
 
-    /// Renders a frame that has been drawn, and times the technique's passes.
+    /// Renders a frame that has been drawn, and times the techniques' passes.
     ///
     /// # Errors
     /// [`Failure::Input`] where the technique can't do the frame, [`Failure::Device`] where the GPU fails.
