@@ -733,7 +733,7 @@ fn sun_and_panel(sun: Option<&str>, panel: Option<&str>) -> String {
     });
     let panel = panel.map(|name| {
         format!(
-            "[[light]]\ntype = \"rect\"\nradiance = [9, 9, 9]\nvpls = 9\n{PANEL}technique = {{ name = \"{name}\" }}\n"
+            "[[light]]\ntype = \"rect\"\nradiance = [90, 90, 90]\nvpls = 9\n{PANEL}technique = {{ name = \"{name}\" }}\n"
         )
     });
     let lights = [sun, panel].map(Option::unwrap_or_default).concat();
