@@ -2,8 +2,6 @@
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::scene::Scene;
-
 /// The movement of one node relative to its parent. What has no curve stays as it is at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeAnimation {
@@ -144,15 +142,6 @@ impl NodeAnimation {
                 .try_normalize()
                 .map_or(self.rest.rotation, Quat::from_vec4),
             scale: value(&self.scale, seconds, self.rest.scale),
-        }
-    }
-}
-
-/// Puts the scene's animated nodes where they are at a time [s] since the animations began.
-pub fn pose(scene: &mut Scene, seconds: f32) {
-    for animation in &scene.animations {
-        if let Some(node) = scene.nodes.get_mut(animation.node) {
-            node.parent_from_local = animation.at(seconds).into();
         }
     }
 }

@@ -18,8 +18,19 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Its pictures.
     pub textures: Vec<Texture>,
-    /// What moves its nodes, at most one entry a node; they are at rest unless [`pose`](crate::animation::pose)d.
+    /// The movements of its nodes, at most one entry a node; all are at rest until [`Scene::pose`] moves them.
     pub animations: Vec<NodeAnimation>,
+}
+
+impl Scene {
+    /// Moves the animated nodes to where they are at a time [s] since the animations began.
+    pub fn pose(&mut self, seconds: f32) {
+        for animation in &self.animations {
+            if let Some(node) = self.nodes.get_mut(animation.node) {
+                node.parent_from_local = animation.at(seconds).into();
+            }
+        }
+    }
 }
 
 /// A node of the hierarchy: a place, and what is there.

@@ -192,7 +192,7 @@ mod tests {
     use glam::{DVec4, Vec3, vec3};
 
     use super::*;
-    use crate::trace::test_scenes::{block, opaque, soup};
+    use crate::test_scenes::{block, opaque, soup};
 
     fn sun(direction: [f32; 3]) -> Emitter {
         Emitter::Directional {

@@ -3,13 +3,12 @@
 use glam::{DVec3, Vec3};
 use tyndall::frame::{Camera, Emitter};
 
+use super::defaults::MEAN_COSINE;
 use crate::{
     geometry::Bounds,
     trace::Tracer,
     view::{Ray, View},
 };
-
-use super::MEAN_COSINE;
 
 /// View rays across and down, and points on each.
 const RAYS: [u32; 2] = [20, 15];

@@ -5,7 +5,7 @@ use half::f16;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroup, BindGroupLayout, Device, Queue, TextureView};
 
-use super::{error::GpuSceneError, pipeline::uniform_entry, texture};
+use super::{binding::uniform_entry, error::GpuSceneError, texture};
 use crate::scene::{Blocking, Material, Scene, Texture, Wrap};
 
 /// `Material` of `material.wgsl`.

@@ -6,6 +6,7 @@
 //!
 //! Whoever has no device yet gets one from [`connect`]; whoever wants numbers back reads them with [`readback`].
 
+mod binding;
 mod device;
 mod error;
 mod g_buffer;

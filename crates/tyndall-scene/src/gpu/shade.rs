@@ -15,8 +15,9 @@ use wgpu::{
 };
 
 use super::{
+    binding::uniform_entry,
     error::GpuSceneError,
-    pipeline::{Layouts, cleared, uniform_entry},
+    pipeline::{Layouts, cleared},
     shaders::{self, Shader},
     targets::{Absent, GBufferTargets},
     uniforms::{ShadeLightUniform, ShadeViewUniform},

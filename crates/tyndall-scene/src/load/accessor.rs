@@ -7,7 +7,10 @@ use gltf::{
     buffer,
 };
 
-use super::{Refusal, broken, buffers::Buffers, called};
+use super::{
+    buffers::Buffers,
+    error::{Refusal, broken, called},
+};
 
 /// Most elements of an accessor without data of its own (sparse over zeros), so that a few bytes cannot claim gigabytes.
 const MAX_IMPLICIT_ELEMENTS: usize = 1 << 24;

@@ -9,11 +9,9 @@ use gltf::{
 };
 
 use super::{
-    Refusal,
     accessor::{Integers, read_vectors},
-    broken,
     buffers::Buffers,
-    called,
+    error::{Refusal, broken, called},
 };
 use crate::{
     animation::{Curve, Interpolation, NodeAnimation, Placement},

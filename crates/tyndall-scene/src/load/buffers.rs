@@ -11,7 +11,7 @@ use data_url::DataUrl;
 use gltf::{Document, buffer};
 use percent_encoding::percent_decode_str;
 
-use super::{Refusal, broken, called};
+use super::error::{Refusal, broken, called};
 
 /// The document's buffers, each loaded when it is first needed.
 pub(super) struct Buffers<'a> {

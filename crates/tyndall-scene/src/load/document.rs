@@ -8,7 +8,7 @@ use gltf::{
     },
 };
 
-use super::{Refusal, broken, called};
+use super::error::{Refusal, broken, called};
 
 /// Extensions a file may require: those that are read, and those that a Lambert surface can do without.
 const SUPPORTED_EXTENSIONS: &[&str] = &[

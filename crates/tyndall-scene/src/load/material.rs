@@ -5,7 +5,10 @@ use std::{collections::HashMap, io::Cursor};
 use gltf::{material::AlphaMode, texture::WrappingMode};
 use image::{ImageReader, Limits};
 
-use super::{Refusal, broken, buffers::Buffers, called};
+use super::{
+    buffers::Buffers,
+    error::{Refusal, broken, called},
+};
 use crate::scene::{Blocking, Material, Texture, Wrap};
 
 /// Largest width and height of a picture [texels].

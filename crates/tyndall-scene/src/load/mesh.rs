@@ -6,11 +6,9 @@ use glam::{Mat2, Vec2, Vec3};
 use gltf::{Semantic, mesh::Mode};
 
 use super::{
-    Refusal,
     accessor::{Integers, read_indices, read_vectors},
-    broken,
     buffers::Buffers,
-    called,
+    error::{Refusal, broken, called},
     material::Materials,
 };
 use crate::scene::{Material, Mesh, Primitive, Texture};

@@ -6,7 +6,7 @@ use glam::{Affine3A, Mat4, Quat, Vec3};
 use gltf::{Document, json, khr_lights_punctual::Kind, scene::Transform};
 use tyndall::frame::{Emitter, Projection};
 
-use super::{Refusal, broken, called};
+use super::error::{Refusal, broken, called};
 use crate::{
     geometry::world_from_nodes,
     scene::{Node, Scene},

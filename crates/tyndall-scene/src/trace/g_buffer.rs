@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use tyndall::{cpu::Progress, frame::Camera};
 
-use super::{Hit, Tracer};
+use super::tracer::{Hit, Tracer};
 use crate::view::{Ray, View};
 
 /// What the camera sees, one entry a pixel in every array, row by row from the top left.
@@ -143,7 +143,7 @@ mod tests {
     use super::*;
     use crate::{
         scene::{Blocking, Scene, Texture, Wrap},
-        trace::test_scenes::{ball, material, opaque, quad, scene},
+        test_scenes::{ball, material, opaque, quad, scene},
     };
 
     /// Looks along -z from z = 4; 90 degrees high and wide, or 8 m.

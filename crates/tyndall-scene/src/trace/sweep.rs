@@ -21,7 +21,7 @@
 use glam::{DVec2, DVec3, Vec3, Vec3A, Vec4};
 use tyndall::cpu::{LightSource, Occluders, Shade};
 
-use super::{Tracer, texels};
+use super::{texels, tracer::Tracer};
 use crate::view::Ray;
 
 /// Surfaces closer to the ray along the light than this share of the scene's largest coordinate don't shade it.

@@ -3,12 +3,10 @@
 use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 use tyndall::cpu::{LightSource, Occluders, Shade};
 
-use super::{
-    Tracer,
-    test_scenes::{Random, ball, block, material, opaque, quad, scene, soup},
-};
+use super::Tracer;
 use crate::{
     scene::{Blocking, Scene, Texture, Wrap},
+    test_scenes::{Random, ball, block, material, opaque, quad, scene, soup},
     view::Ray,
 };
 

@@ -603,7 +603,7 @@ fn animations_move_nodes_and_rest_where_they_have_no_channel() {
             scene.nodes[moved].parent_from_local.translation,
             Vec3::splat(9.0).into()
         );
-        tyndall_scene::animation::pose(&mut scene, 0.5);
+        scene.pose(0.5);
         let place = scene.nodes[moved].parent_from_local;
         let expected = Affine3A::from_scale_rotation_translation(
             Vec3::splat(3.0),
