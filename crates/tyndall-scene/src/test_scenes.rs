@@ -9,7 +9,7 @@ use tyndall::frame::{Emitter, ShadowProjection};
 
 use crate::scene::{Blocking, Material, Mesh, Node, Primitive, Scene, Texture};
 
-/// A source of numbers that is the same everywhere (Knuth's MMIX linear congruential generator).
+/// Random numbers, equal on every machine (Knuth's MMIX linear congruential generator).
 pub(crate) struct Random(u64);
 
 impl Random {

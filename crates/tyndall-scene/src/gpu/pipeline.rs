@@ -1,4 +1,4 @@
-//! What the pipelines that draw the scene's triangles have in common.
+//! Common parts of the pipelines that draw the scene's triangles.
 
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{

@@ -107,7 +107,7 @@ impl<'a> SurfaceShadow<'a> {
             .product()
     }
 
-    /// True where a stored depth is nearer to the light than `depth` (1 nearest); nothing was drawn where it is 0.
+    /// True if a stored depth is nearer to the light than `depth` (1 nearest); nothing was drawn where it is 0.
     fn hides(&self, stored: f32, depth: f64) -> bool {
         let stored = if self.reversed {
             f64::from(stored)

@@ -61,7 +61,7 @@ mod tests {
     use super::*;
     use crate::test_scenes::{opaque, quad};
 
-    /// Two squares, one of twice the other's edge: any stretch of the cloud holds them four to one, and its boxes evenly.
+    /// Any stretch of a cloud over two squares, one of twice the other's edge, holds them four to one, and its boxes evenly.
     #[test]
     fn points_are_even_over_the_area() {
         let mut soup = quad(Vec3::ZERO, Vec3::X, Vec3::Z).to_vec();

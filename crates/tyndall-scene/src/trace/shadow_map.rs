@@ -99,7 +99,7 @@ mod tests {
         assert!(hits > 100, "only {hits} hits");
     }
 
-    /// Where texel (x, y) of a face of 2 x 2 looks, by the table of the Direct3D 11.3 specification ("TextureCube"): the
+    /// Directions of the faces by the table of the Direct3D 11.3 specification ("TextureCube"): the
     /// face's axis, and the world axes that u and v grow along.
     const FACES: [[Vec3; 3]; 6] = [
         [Vec3::X, Vec3::NEG_Z, Vec3::NEG_Y],

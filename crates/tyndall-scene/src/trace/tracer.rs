@@ -1,4 +1,4 @@
-//! The scene made ready for rays, and what a ray meets.
+//! The scene made ready for rays, and their hits.
 
 use glam::{DVec2, DVec3};
 
@@ -89,7 +89,7 @@ impl Tracer {
         closest
     }
 
-    /// True where any opaque surface is at a distance within `range` [m]; see [`Tracer::closest`].
+    /// True if any opaque surface is at a distance within `range` [m]; see [`Tracer::closest`].
     pub fn blocked(&self, ray: &Ray, range: [f64; 2]) -> bool {
         let prepared = TriangleRay::new(ray);
         let [from, to] = range;
@@ -119,7 +119,7 @@ impl Tracer {
         });
     }
 
-    /// True where glass or a blended surface changes the colour of light somewhere.
+    /// True if glass or a blended surface changes the colour of light somewhere.
     pub fn has_tinted_glass(&self) -> bool {
         !self.glass.is_empty()
     }
@@ -143,7 +143,7 @@ impl Tracer {
         })
     }
 
-    /// True where the surface is opaque: not in a hole.
+    /// True if the surface is opaque: not in a hole.
     pub(super) fn blocks(&self, hit: &Hit) -> bool {
         self.tint(hit) == DVec3::ZERO
     }
