@@ -8,7 +8,6 @@ use std::sync::{Arc, LazyLock};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 use tyndall::frame::{Camera, Emitter, Medium, TexturePlacement};
 use tyndall_scene::{
-    animation,
     geometry::{Bounds, Geometry, world_from_nodes},
     scene::{Mesh, Node, Scene},
     trace::Tracer,
@@ -98,7 +97,7 @@ impl Sequence {
     /// Puts the nodes where they are in a frame: the scene's own animations, then the shot's.
     fn pose(&self, scene: &mut Scene, frame: u32) {
         scene.nodes.clone_from(&self.source.scene.nodes);
-        animation::pose(scene, frame as f32 / self.animation.fps);
+        scene.pose(frame as f32 / self.animation.fps);
         for movement in &self.animation.moves {
             let offset = self.offset(movement, frame);
             if let MoveTarget::Node(name) = &movement.target {

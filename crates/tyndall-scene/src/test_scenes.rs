@@ -1,10 +1,15 @@
-//! Scenes made in a line for tests.
+//! Scenes and lights made in a line for tests.
 
-use glam::{Affine3A, Vec2, Vec3, vec3};
+use glam::{
+    Affine3A, Vec2, Vec3,
+    camera::rh::{proj::directx, view},
+    vec3,
+};
+use tyndall::frame::{Emitter, ShadowProjection};
 
 use crate::scene::{Blocking, Material, Mesh, Node, Primitive, Scene, Texture};
 
-/// A source of numbers that is the same everywhere (Knuth's MMIX linear congruential generator).
+/// Random numbers, equal on every machine (Knuth's MMIX linear congruential generator).
 pub(crate) struct Random(u64);
 
 impl Random {
@@ -143,4 +148,25 @@ pub(crate) fn soup(count: usize, seed: u64) -> Vec<[Vec3; 3]> {
             std::array::from_fn(|_| (center + size * random.point()).as_vec3())
         })
         .collect()
+}
+
+/// A sun at the zenith.
+pub(crate) const SUN_OVERHEAD: Emitter = Emitter::Directional {
+    direction: [0.0, -1.0, 0.0],
+    illuminance: [1.0; 3],
+};
+
+/// Looks down from y = 3 onto 4 x 4 m: the near plane at y = 3, the far plane at y = -1.
+pub(crate) fn map_from_above(reversed_depth: bool) -> ShadowProjection {
+    let view_from_world = view::look_to_mat4(3.0 * Vec3::Y, Vec3::NEG_Y, Vec3::NEG_Z);
+    let (near, far) = if reversed_depth {
+        (4.0, 0.0)
+    } else {
+        (0.0, 4.0)
+    };
+    let clip = directx::orthographic(-2.0, 2.0, -2.0, 2.0, near, far) * view_from_world;
+    ShadowProjection::Single {
+        clip_from_world: clip.to_cols_array_2d(),
+        reversed_depth,
+    }
 }
