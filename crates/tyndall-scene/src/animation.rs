@@ -1,10 +1,8 @@
-//! What moves a scene's nodes: keyframes of their places, as glTF 2.0 has them (section 3.11 and appendix C).
+//! Keyframes of nodes' places, as glTF 2.0 has them (section 3.11 and appendix C).
 
 use glam::{Affine3A, Quat, Vec3};
 
-use crate::scene::Scene;
-
-/// The movement of one node relative to its parent. What has no curve stays as it is at rest.
+/// The movement of one node relative to its parent. A property without a curve stays as it is at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeAnimation {
     /// Index into [`Scene::nodes`].
@@ -30,31 +28,31 @@ pub struct Placement {
     pub scale: Vec3,
 }
 
-/// Values at times; before the first key its value, after the last key that one's.
+/// Values at times: the first key's before it, the last key's after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<T> {
     /// Times of the keys, rising [s]; at least one.
     pub times: Vec<f32>,
     /// One value a key; of cubic curves three: in-tangent, value, out-tangent.
     pub values: Vec<T>,
-    /// What is between keys.
+    /// Interpolation between keys.
     pub interpolation: Interpolation,
 }
 
-/// What is between two keys of a curve.
+/// Interpolation between two keys of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// The value of the first.
+    /// The first key's value.
     Step,
-    /// The straight line; of rotations the shortest arc.
+    /// Linear; rotations turn along the shortest arc.
     Linear,
     /// A Hermite spline with the keys' tangents.
     Cubic,
 }
 
-/// What curves are made of.
+/// A value that curves interpolate.
 pub trait Animated: Copy {
-    /// The point at `t` in [0, 1] on the way from `a` to `b`.
+    /// The value at `t` in [0, 1] between `a` and `b`.
     fn between(a: Self, b: Self, t: f32) -> Self;
     /// The sum of values times weights, made valid again.
     fn weighted(terms: [(Self, f32); 4]) -> Self;
@@ -130,7 +128,7 @@ impl From<Placement> for Affine3A {
 }
 
 impl NodeAnimation {
-    /// Where the node is at a time [s], relative to its parent.
+    /// The node's place at a time [s], relative to its parent.
     pub fn at(&self, seconds: f32) -> Placement {
         fn value<T: Animated>(curve: &Option<Curve<T>>, seconds: f32, rest: T) -> T {
             let curve = curve.as_ref();
@@ -144,15 +142,6 @@ impl NodeAnimation {
                 .try_normalize()
                 .map_or(self.rest.rotation, Quat::from_vec4),
             scale: value(&self.scale, seconds, self.rest.scale),
-        }
-    }
-}
-
-/// Puts the scene's animated nodes where they are at a time [s] since the animations began.
-pub fn pose(scene: &mut Scene, seconds: f32) {
-    for animation in &scene.animations {
-        if let Some(node) = scene.nodes.get_mut(animation.node) {
-            node.parent_from_local = animation.at(seconds).into();
         }
     }
 }
@@ -214,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn rotations_turn_the_short_way_and_stay_unit() {
+    fn rotations_turn_along_the_short_arc_and_stay_unit() {
         let turn = Quat::from_rotation_y;
         let linear = Curve {
             times: vec![0.0, 1.0],

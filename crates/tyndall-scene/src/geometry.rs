@@ -25,12 +25,12 @@ impl Bounds {
             })
     }
 
-    /// Its middle [m].
+    /// The middle [m].
     pub fn center(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// Its edges' lengths [m].
+    /// The edges' lengths [m].
     pub fn extent(&self) -> Vec3 {
         self.max - self.min
     }
@@ -67,7 +67,7 @@ impl Geometry {
         self.positions.len()
     }
 
-    /// True where there are no triangles.
+    /// True if there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
@@ -77,7 +77,7 @@ impl Geometry {
         Bounds::of(self.positions.iter().flatten().copied())
     }
 
-    /// The same triangles in another order: triangle `i` is what was `order[i]`.
+    /// The triangles in another order: triangle `i` was `order[i]`.
     pub(crate) fn reordered(&self, order: &[u32]) -> Self {
         fn pick<T: Copy>(from: &[T], order: &[u32]) -> Vec<T> {
             order.iter().map(|&i| from[i as usize]).collect()
@@ -107,7 +107,7 @@ impl Geometry {
     }
 }
 
-/// Where every node stands in the world; a node's parent comes before it.
+/// Transforms from the nodes' own spaces to world space, one a node.
 pub fn world_from_nodes(scene: &Scene) -> Vec<Affine3A> {
     let mut world_from_node: Vec<Affine3A> = Vec::with_capacity(scene.nodes.len());
     for node in &scene.nodes {

@@ -10,6 +10,8 @@ pub mod load;
 pub mod scene;
 pub mod shading;
 pub mod shadow_fit;
+#[cfg(test)]
+mod test_scenes;
 pub mod texture;
 pub mod trace;
 pub mod view;

@@ -19,7 +19,7 @@ use crate::geometry::Geometry;
 /// Space round the scene, relative to its size in the map: a texel of a map of 1024.
 const MARGIN: f64 = 1.0 / 1024.0;
 
-/// Smallest distance of the near plane, relative to the far plane's. What is closer to the light casts no shadow.
+/// Smallest distance of the near plane, relative to the far plane's. Surfaces closer to the light cast no shadow.
 const NEAR_OVER_FAR: f64 = 1e-4;
 
 /// The projection of a light's shadow map for a scene.
@@ -27,8 +27,9 @@ const NEAR_OVER_FAR: f64 = 1e-4;
 /// - Directional: orthographic, the smallest rectangle round the scene as seen from the light, turned to fit;
 ///   near and far enclose the scene.
 /// - Spot: perspective, just wider than the cone. Point: a cube. The far plane is behind the farthest corner of a
-///   triangle; the near plane is in front of the scene's bounds, but no closer than a ten thousandth of the far plane's distance.
-/// - Rectangle: `None`. Also `None` where no surface can block the light.
+///   triangle; the near plane is in front of the scene's bounds, but no closer than a ten thousandth of the far plane's
+///   distance.
+/// - Rectangle: `None`, as for all lights that no surface can block.
 pub fn fit(geometry: &Geometry, emitter: &Emitter) -> Option<ShadowProjection> {
     let vector = |v: [f32; 3]| DVec3::from(v.map(f64::from));
     match *emitter {
@@ -97,7 +98,7 @@ fn cube(geometry: &Geometry, position: DVec3) -> Option<ShadowProjection> {
     let [_, farthest] = extent(corners(geometry).map(|p| (p - position).abs().max_element()))?;
     let bounds = geometry.bounds()?;
     let outside = position - position.clamp(bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    // Whatever is at this distance or farther is at least as deep as this along its face's axis.
+    // Surfaces at this distance or farther are at least as deep as this along their face's axis.
     let nearest = outside.length() / 3_f64.sqrt();
     let [near, far] = planes(nearest, farthest)?;
     Some(ShadowProjection::Cube {
@@ -192,7 +193,7 @@ mod tests {
     use glam::{DVec4, Vec3, vec3};
 
     use super::*;
-    use crate::trace::test_scenes::{block, opaque, soup};
+    use crate::test_scenes::{block, opaque, soup};
 
     fn sun(direction: [f32; 3]) -> Emitter {
         Emitter::Directional {

@@ -1,4 +1,4 @@
-//! Pictures with mip levels, sampled as a GPU samples an sRGB texture: decoded first, filtered then.
+//! Textures with mip levels, sampled as a GPU samples sRGB ones: decoded first, filtered then.
 
 use std::sync::LazyLock;
 
@@ -47,7 +47,7 @@ static LINEAR_FROM_BYTE: LazyLock<[f64; 256]> =
     LazyLock::new(|| std::array::from_fn(|i| linear_from_srgb(i as f64 / 255.0)));
 
 impl MipLevel {
-    /// Linear RGBA of a texel of the picture.
+    /// Linear RGBA of a texel.
     fn texel(&self, x: usize, y: usize) -> DVec4 {
         let [r, g, b, a] = self.texels[y * self.size[0] as usize + x];
         let table = &*LINEAR_FROM_BYTE;
@@ -129,7 +129,7 @@ impl MipTexture {
     pub fn lod(&self, dx: DVec2, dy: DVec2) -> f64 {
         let size = DVec2::from(self.levels[0].size.map(f64::from));
         let texels = (dx * size).length().max((dy * size).length());
-        // Of a texture seen from infinitely far the smallest level is right; NaN (0 * infinity) gives the largest.
+        // The smallest level is right for a texture seen from infinitely far; NaN (0 * infinity) gives the largest.
         texels.max(1.0).log2()
     }
 }
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn wraps_like_the_picture_again() {
+    fn wraps_like_the_texture_again() {
         for (wrap, expected) in [
             (Wrap::Repeat, [1, 2, 0, 1, 2, 0, 1, 2, 0]),
             (Wrap::MirroredRepeat, [1, 0, 0, 1, 2, 2, 1, 0, 0]),

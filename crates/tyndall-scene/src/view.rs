@@ -1,4 +1,4 @@
-//! From pixels to view rays, and from view depth to what a depth buffer holds.
+//! From pixels to view rays, and from view depth to depth-buffer values.
 
 use glam::DVec3;
 use tyndall::{
@@ -9,9 +9,9 @@ use tyndall::{
 /// A ray in world space [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// Start [m].
     pub origin: DVec3,
-    /// The way it goes, unit length.
+    /// Direction, unit length.
     pub direction: DVec3,
 }
 
@@ -22,7 +22,7 @@ impl Ray {
     }
 }
 
-/// A camera's picture: the rays through its pixels and the depths it stores.
+/// A camera's image: the rays through its pixels and the depths it stores.
 #[derive(Clone, Debug)]
 pub struct View {
     rays: CameraRays,
@@ -32,7 +32,7 @@ pub struct View {
 }
 
 impl View {
-    /// A camera that takes a picture of `size` [pixels].
+    /// The view of a camera with `size` pixels across and down.
     pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
         let rays = CameraRays::new(camera, size);
         let [near, far] = rays.planes();
@@ -59,12 +59,12 @@ impl View {
         self.planes.map(|depth| depth / self.slope(ray))
     }
 
-    /// What the depth buffer holds for a distance along a ray of this view [m].
+    /// The depth-buffer value for a distance along a ray of this view [m].
     pub fn stored_depth(&self, ray: &Ray, distance: f64) -> f32 {
         self.rays.depth_value(distance * self.slope(ray))
     }
 
-    /// What the depth buffer holds where nothing was drawn.
+    /// The depth-buffer value where nothing was drawn.
     pub fn far_value(&self) -> f32 {
         self.depth_range.far_value()
     }

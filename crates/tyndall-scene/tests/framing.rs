@@ -68,7 +68,7 @@ fn frame(scene: &Scene) -> (Tracer, Framing) {
     (tracer, framing)
 }
 
-/// Where a point is in the picture: x and y in [-1, 1], if it is between the planes.
+/// Normalised device coordinates of a point in the image, each in [-1, 1], if it is between the planes.
 fn project(camera: &Camera, point: Vec3) -> Option<Vec2> {
     let Projection::Perspective {
         half_extent,

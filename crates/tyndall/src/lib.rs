@@ -104,6 +104,8 @@ mod mesh;
 #[cfg(feature = "gpu")]
 mod passes;
 pub mod physics;
+#[cfg(feature = "gpu")]
+pub mod shader;
 pub mod shadow;
 pub mod techniques;
 #[cfg(feature = "gpu")]

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::{EulerRot, Quat, Vec3};
 use tyndall::frame::{Camera, Medium};
 use tyndall_scene::{
-    animation,
     geometry::Geometry,
     scene::{Node, Scene},
 };
@@ -98,7 +97,7 @@ impl Keys {
     /// Puts the nodes where they are in a frame: the scene's own animations first, then the shot's.
     fn pose(&self, scene: &mut Scene, rest: &Vec<Node>, frame: u32) {
         scene.nodes.clone_from(rest);
-        animation::pose(scene, frame as f32 / self.animation.fps);
+        scene.pose(frame as f32 / self.animation.fps);
         for movement in &self.animation.moves {
             let offset = self.offset(movement, frame);
             if let MoveTarget::Node(name) = &movement.target {

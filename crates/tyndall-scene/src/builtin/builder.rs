@@ -31,7 +31,7 @@ impl SceneBuilder {
         })
     }
 
-    /// A surface with a picture.
+    /// A surface with a texture.
     pub(super) fn textured(&mut self, texture: usize, blocking: Blocking) -> usize {
         self.material(Material {
             base_color: [1.0; 4],

@@ -27,16 +27,16 @@ const GABLE: f32 = VAULT + ARCADE + 0.2;
 /// Heights where the aisles' roofs meet the outer walls and the arcades [m].
 const AISLE_ROOF: [f32; 2] = [4.6, 6.3];
 const WALL_THICKNESS: f32 = 0.6;
-/// How much the arches are pointed.
+/// Distance of an arc's centre beyond the arch's middle, in half widths.
 const POINTEDNESS: f32 = 0.4;
 /// Light that clean coloured glass lets pass.
 const GLASS_TRANSMISSION: f32 = 0.9;
-/// Different pictures on the lancets.
-const LANCET_PICTURES: usize = 4;
+/// Number of different textures on the lancets.
+const LANCET_TEXTURES: usize = 4;
 /// Straight pieces of the vault's half circle.
 const VAULT_PIECES: u32 = 32;
 
-/// What is in a window.
+/// Glass in a window.
 #[derive(Clone, Copy, PartialEq)]
 enum Glass {
     None,
@@ -57,8 +57,8 @@ pub(super) fn make() -> Scene {
         (wood, pews()),
         (tiles, floor()),
     ];
-    for (kind, picture) in glasses() {
-        let texture = builder.texture(picture);
+    for (kind, texture) in glasses() {
+        let texture = builder.texture(texture);
         let transmission = GLASS_TRANSMISSION;
         let material = builder.textured(texture, Blocking::Transmissive { transmission });
         parts.push((material, panes(kind)));
@@ -75,9 +75,9 @@ pub(super) fn make() -> Scene {
     builder.finish()
 }
 
-/// Every kind of glass, with its picture.
+/// Every kind of glass, with its texture.
 fn glasses() -> impl Iterator<Item = (Glass, crate::scene::Texture)> {
-    (0..LANCET_PICTURES)
+    (0..LANCET_TEXTURES)
         .map(|i| (Glass::Lancet(i), glass::lancet(11 + i as u64)))
         .chain([(Glass::Rose, glass::rose(3))])
 }
@@ -95,7 +95,7 @@ fn windows() -> Vec<(Bay, Glass)> {
     ));
     for side in [-1.0, 1.0] {
         for bay in 0..BAYS {
-            let lancet = Glass::Lancet((bay as usize + usize::from(side > 0.0)) % LANCET_PICTURES);
+            let lancet = Glass::Lancet((bay as usize + usize::from(side > 0.0)) % LANCET_TEXTURES);
             let glazed = if bay % 3 == 1 { Glass::None } else { lancet };
             windows.push((
                 side_wall(bay, side * ARCADE, [ARCADE_TOP, VAULT], 0.75, [7.2, 8.9]),

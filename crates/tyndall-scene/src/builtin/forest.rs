@@ -73,7 +73,7 @@ fn ground() -> Triangles {
     ground
 }
 
-/// Where trees stand: a grid, moved at random, without the path.
+/// Places of the trees: a grid, moved at random, without the path.
 fn places() -> impl Iterator<Item = Affine3A> {
     let mut random = Random::new(SEED);
     let grid = (-ROWS..=ROWS).flat_map(|row| (-COLUMNS..=COLUMNS).map(move |column| (row, column)));

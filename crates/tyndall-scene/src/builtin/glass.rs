@@ -1,4 +1,4 @@
-//! Pictures made by code: stained glass and floor tiles.
+//! Textures made by code: stained glass and floor tiles.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -19,7 +19,7 @@ const PANES: [Vec3; 7] = [
 /// Linear colour of the lead between panes.
 const LEAD: Vec3 = vec3(0.005, 0.005, 0.005);
 
-/// Makes a picture of linear colours; `color` gets the texel's centre in [0, 1]^2, y down.
+/// Makes a texture of linear colours; `color` gets the texel's centre in [0, 1]^2, y down.
 fn paint(size: [u32; 2], wrap: Wrap, color: impl Fn(Vec2) -> Vec3) -> Texture {
     let texels = (0..size[1])
         .flat_map(|y| (0..size[0]).map(move |x| (x, y)))
@@ -88,7 +88,7 @@ pub(super) fn lancet(seed: u64) -> Texture {
 
 /// A rose window: rings of petals round a middle.
 pub(super) fn rose(seed: u64) -> Texture {
-    /// Outer radius and number of petals of each ring, from inside; the picture's half width is 1.
+    /// Outer radius and number of petals of each ring, from inside; the texture's half width is 1.
     const RINGS: [(f32, u32); 5] = [(0.16, 1), (0.38, 8), (0.62, 16), (0.84, 16), (1.0, 32)];
     const LEAD_WIDTH: f32 = 0.014;
     let mut random = Random::new(seed);

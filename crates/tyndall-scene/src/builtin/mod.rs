@@ -24,7 +24,7 @@ use builder::SceneBuilder;
 pub struct Builtin {
     /// Its name; files and the command line write `builtin:` before it.
     pub name: &'static str,
-    /// One line: what there is to see.
+    /// A description of one line.
     pub about: &'static str,
     make: fn() -> Scene,
 }

@@ -46,7 +46,7 @@ pub(super) fn crowd() -> Scene {
     builder.finish()
 }
 
-/// A floor, a camera and a sun behind what stands there.
+/// A floor, a camera and a sun behind the things on the floor.
 fn stage() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     let ground = builder.plain([0.4, 0.4, 0.4]);

@@ -1,4 +1,4 @@
-//! Random numbers and noise that are the same everywhere.
+//! Random numbers and noise, equal on every machine.
 
 use glam::{IVec2, Vec2, Vec3, vec2, vec3};
 use rand_pcg::{Pcg32, rand_core::Rng as _};

@@ -15,7 +15,7 @@ const WINDOW: [[f32; 2]; 2] = [[-1.2, 0.8], [1.2, 2.4]];
 const SLATS: u32 = 26;
 /// Half a slat's depth and thickness [m].
 const SLAT: [f32; 2] = [0.03, 0.0015];
-/// How far the slats are tilted, down towards the room.
+/// Tilt of the slats, down towards the room [rad].
 const TILT: f32 = 0.35;
 
 pub(super) fn make() -> Scene {

@@ -36,7 +36,7 @@ pub(super) fn make() -> Scene {
     builder.finish()
 }
 
-/// Where a grid point is, seen from above.
+/// Position of a grid point, seen from above [m].
 fn place(column: u32, row: u32) -> Vec2 {
     let step = SIDE / (POINTS - 1) as f32;
     vec2(column as f32, row as f32) * step - Vec2::splat(0.5 * SIDE)

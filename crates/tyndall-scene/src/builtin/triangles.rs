@@ -150,7 +150,7 @@ impl Triangles {
         self.reveal(bay, [end[0], end[1]], [end[0], end[2]]);
     }
 
-    /// The glass in a bay's opening, in the middle of the wall; the picture fills the opening's bounding box.
+    /// The glass in a bay's opening, in the middle of the wall; its texture fills the opening's bounding box.
     pub(super) fn pane(&mut self, bay: &Bay) {
         let opening = &bay.opening.0;
         let span = |i: usize| {

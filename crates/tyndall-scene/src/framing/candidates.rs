@@ -21,13 +21,13 @@ const POINTS: u32 = 384;
 const DIRECTIONS: u32 = 32;
 
 /// Share of directions that end at the front of a surface where a point counts as inside. Windows and doors let the
-/// others out; the backs of surfaces are what is seen from inside of solid things.
+/// others out; the backs of surfaces are seen from inside of solid things.
 const ENCLOSED: f32 = 0.7;
 
 /// Share of points inside that makes a scene an interior.
 const INTERIOR: f32 = 0.15;
 
-/// Spots inside that are looked at closely, ways to look from each, and cameras that remain.
+/// Spots inside that are looked at closely, headings of the cameras at each, and cameras that remain.
 const SPOTS: usize = 64;
 const HEADINGS: u32 = 12;
 const KEPT: usize = 6;
@@ -37,7 +37,7 @@ const CLEARANCE: f32 = 0.02;
 
 /// Views from all round a thing.
 const OUTSIDE_VIEWS: u32 = 12;
-/// How far a camera outside looks down, and one inside looks up [rad].
+/// Pitches below the horizon of a camera outside, and above it of one inside [rad].
 const OUTSIDE_PITCH: f32 = 0.35;
 const INSIDE_PITCH: f32 = 0.10;
 
@@ -112,7 +112,7 @@ fn inside_cameras(tracer: &Tracer, inside: &[Vec3], bounds: &Bounds, aspect: f32
     kept
 }
 
-/// Whether two cameras stand close together and look the same way.
+/// True if two cameras stand close together and look in about the same direction.
 fn are_alike(a: &Camera, b: &Camera, far: f32) -> bool {
     let distance = Vec3::from(a.eye).distance(Vec3::from(b.eye));
     distance < 0.1 * far && Vec3::from(a.forward).dot(Vec3::from(b.forward)) > 0.7
@@ -133,7 +133,7 @@ fn clearance(tracer: &Tracer, point: Vec3, far: f32) -> f32 {
         .fold(far, f32::min)
 }
 
-/// Sum of the square roots of how far a few view rays reach: long views, but none blocked close by. A ray that leaves
+/// Sum of the square roots of a few view rays' lengths: long views, but none blocked close by. A ray that leaves
 /// the interior sees nothing of it.
 fn openness(tracer: &Tracer, camera: &Camera, far: f32) -> f32 {
     const RAYS: [u32; 2] = [7, 5];
@@ -145,7 +145,7 @@ fn openness(tracer: &Tracer, camera: &Camera, far: f32) -> f32 {
         .sum()
 }
 
-/// Looks at the middle of the bounds from a heading, from where all of them are in the picture.
+/// Looks at the middle of the bounds from a heading, from so far that all of them are in the image.
 fn outside_camera(bounds: &Bounds, aspect: f32, heading: f32) -> Camera {
     const MARGIN: f32 = 1.03;
     let forward = looking(heading, -OUTSIDE_PITCH);

@@ -6,7 +6,7 @@ use tyndall::frame::{Camera, DepthRange, Emitter, Projection};
 use crate::{geometry::world_from_nodes, scene::Scene};
 
 /// The scene's cameras with the names of their nodes. Their height of view is kept, their width follows from the
-/// picture's aspect ratio (width / height), as glTF 2.0, section 3.10, advises.
+/// image's aspect ratio (width / height), as glTF 2.0, section 3.10, advises.
 pub fn cameras(scene: &Scene, aspect: f32) -> Vec<(String, Camera)> {
     world_from_nodes(scene)
         .iter()
@@ -50,7 +50,7 @@ fn placed_camera(
     })
 }
 
-/// Scale changes where a light is and the size of rectangles, not how strong it is.
+/// Scale changes a light's position and a rectangle's size, not its strength.
 fn placed_light(light: Emitter, world_from_node: &Affine3A) -> Option<Emitter> {
     let moved = |p: [f32; 3]| world_from_node.transform_point3(p.into()).to_array();
     let stretched = |v: [f32; 3]| world_from_node.transform_vector3(v.into()).to_array();

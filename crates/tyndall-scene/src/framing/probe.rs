@@ -1,28 +1,27 @@
-//! How much the shafts of a light show in a view.
+//! The contrast of light shafts in a view.
 
 use glam::{DVec3, Vec3};
 use tyndall::frame::{Camera, Emitter};
 
+use super::defaults::MEAN_COSINE;
 use crate::{
     geometry::Bounds,
     trace::Tracer,
     view::{Ray, View},
 };
 
-use super::MEAN_COSINE;
-
 /// View rays across and down, and points on each.
 const RAYS: [u32; 2] = [20, 15];
 const POINTS: u32 = 16;
 
-/// What contrast counts for where the eye itself is in the light.
+/// Factor on the contrast if the eye itself is in the light.
 const LIT_EYE: f64 = 0.5;
 
 /// The medium seen by a camera, as points on a few view rays.
 pub(super) struct Probe {
     /// Row by row from the top left.
     rays: Vec<(Ray, f64)>,
-    /// What shadow rays stay away from surfaces and lights [m].
+    /// Distance that shadow rays keep from surfaces and lights [m].
     margin: f64,
     /// Longer than any shadow ray [m].
     diagonal: f64,
@@ -124,7 +123,7 @@ impl Probe {
         sum / f64::from(POINTS) * length
     }
 
-    /// A lamp above the middle of what is seen, which lights as much as `illuminance` there.
+    /// A lamp half way along the middle view ray, with this illuminance at the ray's end [W/m^2].
     pub(super) fn lamp(&self, illuminance: [f32; 3]) -> Emitter {
         let (ray, length) = &self.rays[self.rays.len() / 2];
         let reach = 0.5 * length;
@@ -143,7 +142,7 @@ struct Arrival {
 }
 
 impl Arrival {
-    /// `None` where the light does not shine that way. Directional light comes from `far` away.
+    /// `None` if no light shines on the point. Directional light comes from `far` away.
     fn new(light: &Emitter, point: DVec3, far: f64) -> Option<Self> {
         let vector = |v: [f32; 3]| Vec3::from(v).as_dvec3();
         let strength = |rgb: [f32; 3]| f64::from(rgb.iter().sum::<f32>()) / 3.0;
@@ -211,7 +210,7 @@ fn phase(cosine: f64) -> f64 {
     (1.0 + g * g - 2.0 * g * cosine).powf(-0.75)
 }
 
-/// Where a ray leaves the bounds for the last time; 0 where it never meets them.
+/// Distance at which a ray leaves the bounds for the last time; 0 if it never meets them.
 fn exit(ray: &Ray, bounds: &Bounds) -> f64 {
     let [low, high] =
         [bounds.min, bounds.max].map(|corner| (corner.as_dvec3() - ray.origin) / ray.direction);

@@ -2,7 +2,7 @@
 
 use wgpu::{Adapter, Backends, Device, Features, Limits, PowerPreference, Queue};
 
-/// Why there is no device.
+/// Reason why there is no device.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum NoAdapter {
     /// No driver offers an adapter.
@@ -13,7 +13,7 @@ pub enum NoAdapter {
     Device(#[from] wgpu::RequestDeviceError),
 }
 
-/// What is used where an adapter has it; nothing here is required.
+/// Features to use if the adapter has them; none is required.
 const WANTED: Features = Features::TIMESTAMP_QUERY
     .union(Features::FLOAT32_BLENDABLE)
     .union(Features::FLOAT32_FILTERABLE);
@@ -30,7 +30,7 @@ pub fn connect(prefer: PowerPreference) -> Result<(Adapter, Device, Queue), NoAd
 
 async fn connect_async(prefer: PowerPreference) -> Result<(Adapter, Device, Queue), NoAdapter> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    // OpenGL is no fallback: it lacks what the passes need, and a missing display makes its loader noisy.
+    // OpenGL is no fallback: it lacks features that the passes need, and a missing display makes its loader noisy.
     descriptor.backends = Backends::PRIMARY;
     let instance = wgpu::Instance::new(descriptor.with_env());
     let adapter = instance

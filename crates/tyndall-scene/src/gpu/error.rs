@@ -1,13 +1,13 @@
-//! What can go wrong when a scene meets a device.
+//! Errors of scenes on a device.
 
-/// Why a scene, or a target to draw it on, cannot be made on a device.
+/// Reason why a scene, or a target to draw it on, cannot be made on a device.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuSceneError {
     /// A texture is empty or larger than the device's.
     #[error("{what} must be 1 to {limit} texels a side (the device's `max_texture_dimension_2d`), found {} x {}", size[0], size[1])]
     TextureSize {
-        /// Which texture.
+        /// The texture's name.
         what: String,
         /// Its size [texels].
         size: [u32; 2],
@@ -17,7 +17,7 @@ pub enum GpuSceneError {
     /// A texture's pixels do not fill its size.
     #[error("{what} must have {expected} texels, found {found}")]
     TexelCount {
-        /// Which texture.
+        /// The texture's name.
         what: String,
         /// Width times height.
         expected: usize,
@@ -29,7 +29,7 @@ pub enum GpuSceneError {
         "{what} needs {found} array layers; the device's `max_texture_array_layers` is {limit}"
     )]
     TextureLayers {
-        /// Which texture.
+        /// The texture's name.
         what: String,
         /// Layers needed.
         found: u32,
@@ -39,7 +39,7 @@ pub enum GpuSceneError {
     /// One buffer would have to be larger than the device's.
     #[error("{what} needs a buffer of {found} bytes; the device's `max_buffer_size` is {limit}")]
     BufferSize {
-        /// What the buffer holds.
+        /// The buffer's contents.
         what: String,
         /// Bytes needed.
         found: u64,

@@ -1,4 +1,4 @@
-//! The G-buffer of a camera: opaque surfaces, then the tint of what is before them.
+//! The G-buffer of a camera: opaque surfaces, then the tint of the glass before them.
 
 use tyndall::{frame::Camera, gpu::PassTimer};
 use wgpu::{
@@ -17,7 +17,7 @@ use super::{
     view::ViewUniform,
 };
 
-/// Multiplies what is there.
+/// Multiplies the target's colour.
 const MULTIPLY: BlendState = {
     let component = BlendComponent {
         src_factor: BlendFactor::Dst,

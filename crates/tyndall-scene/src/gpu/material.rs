@@ -5,7 +5,7 @@ use half::f16;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroup, BindGroupLayout, Device, Queue, TextureView};
 
-use super::{error::GpuSceneError, pipeline::uniform_entry, texture};
+use super::{binding::uniform_entry, error::GpuSceneError, texture};
 use crate::scene::{Blocking, Material, Scene, Texture, Wrap};
 
 /// `Material` of `material.wgsl`.
@@ -156,7 +156,7 @@ fn address_mode(wrap: Wrap) -> wgpu::AddressMode {
     }
 }
 
-/// Whether any light that goes through the scene's glass and blended surfaces changes its colour.
+/// True if the scene's glass and blended surfaces change the colour of any light that goes through them.
 /// Clear glass (tint 1 everywhere) is no glass at all.
 pub(super) fn has_tinted_glass(scene: &Scene) -> bool {
     scene.materials.iter().any(|material| {

@@ -22,7 +22,7 @@ pub(super) struct Vertex {
     uv: [f32; 2],
 }
 
-/// Where an instance of a mesh is: the rows of world_from_local.
+/// The place of an instance of a mesh: the rows of world_from_local.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct Instance {
@@ -57,7 +57,7 @@ pub(super) const VERTEX_LAYOUTS: [Option<wgpu::VertexBufferLayout<'static>>; 2] 
     }),
 ];
 
-/// Which pipelines a draw belongs to.
+/// The kind of pipeline that a draw belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum DrawClass {
     Opaque,
@@ -138,7 +138,7 @@ impl Meshes {
         queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&instances));
     }
 
-    /// Whether anything of a class is there to be drawn.
+    /// True if anything of a class is there to be drawn.
     pub(super) fn has(&self, class: DrawClass) -> bool {
         self.draws.iter().any(|draw| draw.class == class)
     }

@@ -1,11 +1,12 @@
-//! The scene on the GPU: what an engine gives [`tyndall::Effect`] besides the frame.
+//! The scene on the GPU: the inputs that an engine gives [`tyndall::Effect`] besides the frame.
 //!
 //! A [`SceneRenderer`] holds the uploaded scene and every pipeline; its methods only record passes on the caller's
 //! encoder: a G-buffer, shadow maps, layers of coloured glass, and lit surfaces. It has a twin on the CPU
 //! ([`crate::trace`], [`crate::shading`]), whose results it equals but for rasterisation and rounding.
 //!
-//! Whoever has no device yet gets one from [`connect`]; whoever wants numbers back reads them with [`readback`].
+//! [`connect`] makes a device for callers without one; [`readback`] reads textures back as numbers.
 
+mod binding;
 mod device;
 mod error;
 mod g_buffer;

@@ -19,7 +19,7 @@ impl SceneOccluders {
     /// Uploads every mesh that a node shows.
     ///
     /// # Errors
-    /// Where a mesh is larger than what the device binds.
+    /// [`OccluderError`] if a mesh is larger than the device binds.
     pub fn new(device: &Device, scene: &Scene) -> Result<Self, OccluderError> {
         let is_shown = |index| scene.nodes.iter().any(|node| node.mesh == Some(index));
         let upload = |(index, mesh): (usize, &Mesh)| {
@@ -34,8 +34,8 @@ impl SceneOccluders {
         })
     }
 
-    /// Where they are in `scene`, which differs from the uploaded one in its nodes' places alone; places of a mesh stand
-    /// side by side.
+    /// The occluders at their places in `scene`, which differs from the uploaded one in its nodes' places alone; those of
+    /// one mesh stand side by side.
     pub fn places(&self, scene: &Scene) -> Vec<Occluder<'_>> {
         let world_from_node = world_from_nodes(scene);
         let mut occluders = Vec::new();
@@ -57,7 +57,7 @@ impl SceneOccluders {
     }
 }
 
-/// Positions and indices of what blocks.
+/// Positions and indices of the triangles that block.
 fn blockers(scene: &Scene, mesh: &Mesh) -> (Vec<[f32; 3]>, Vec<u32>) {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for primitive in &mesh.primitives {

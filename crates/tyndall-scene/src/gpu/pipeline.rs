@@ -1,4 +1,4 @@
-//! What the pipelines that draw the scene's triangles have in common.
+//! Common parts of the pipelines that draw the scene's triangles.
 
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
@@ -6,7 +6,10 @@ use wgpu::{
     PipelineCompilationOptions, PipelineLayout, RenderPipeline, ShaderModule,
 };
 
-use super::{material::Materials, mesh::VERTEX_LAYOUTS, targets::DEPTH_FORMAT, view::ViewUniform};
+use super::{
+    binding::uniform_entry, material::Materials, mesh::VERTEX_LAYOUTS, targets::DEPTH_FORMAT,
+    view::ViewUniform,
+};
 
 /// The bind-group layouts of everything that draws triangles.
 pub(super) struct Layouts {
@@ -50,20 +53,6 @@ impl Layouts {
                 resource: buffer.as_entire_binding(),
             }],
         })
-    }
-}
-
-/// A uniform buffer at binding 0.
-pub(super) fn uniform_entry(visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
     }
 }
 

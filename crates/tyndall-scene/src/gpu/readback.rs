@@ -3,14 +3,14 @@
 use half::f16;
 use wgpu::{Device, Queue, Texture, TextureFormat};
 
-/// Why a texture could not be read.
+/// Reason why a texture could not be read.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadbackError {
     /// The texture's format is none that is read as the numbers asked for.
     #[error("a texture of format {found:?} cannot be read as {expected}")]
     Format {
-        /// What was asked for.
+        /// The numbers asked for.
         expected: &'static str,
         /// The texture's format.
         found: TextureFormat,
@@ -84,7 +84,6 @@ fn words<const N: usize, T>(bytes: &[u8], decode: impl Fn([u8; N]) -> T) -> Vec<
         .collect()
 }
 
-/// The texels of level 0 of all layers, without padding.
 /// The u32 at an offset [bytes, a multiple of 4] of a buffer of usage `COPY_SRC`. Waits for the device.
 ///
 /// # Errors
@@ -111,6 +110,7 @@ pub fn buffer_u32(
         .ok_or_else(|| ReadbackError::Device("an empty buffer was mapped".into()))
 }
 
+/// The texels of level 0 of all layers, without padding.
 fn texture_bytes(
     device: &Device,
     queue: &Queue,

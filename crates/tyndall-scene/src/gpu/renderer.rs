@@ -33,7 +33,8 @@ impl SceneRenderer {
     /// Uploads the scene and builds every pipeline; `target_format` is that of the colour target of [`SceneRenderer::shade`].
     ///
     /// # Errors
-    /// Where a texture or a primitive is larger than the device's limits, or the device cannot blend on the target's format.
+    /// [`GpuSceneError`] if a texture or a primitive is beyond the device's limits, or the device cannot blend on the
+    /// target's format.
     pub fn new(
         device: &Device,
         queue: &Queue,
@@ -54,17 +55,17 @@ impl SceneRenderer {
     }
 
     /// Moves the nodes to where they are in `scene`, which differs from the uploaded one in the nodes' places alone.
-    /// Holds for what is submitted from now on.
+    /// Command buffers submitted from now on draw them there.
     pub fn place(&self, queue: &Queue, scene: &Scene) {
         self.scene.meshes.place(queue, scene);
     }
 
-    /// Whether light through the scene's glass and blended surfaces changes its colour, so that lights need glass maps.
+    /// True if light through the scene's glass and blended surfaces changes its colour, so that lights need glass maps.
     pub fn has_tinted_glass(&self) -> bool {
         self.has_tinted_glass
     }
 
-    /// Records what `camera` sees. Its depth is in the camera's convention, its pixels are those of `targets`.
+    /// Records the G-buffer of `camera`. Its depth is in the camera's convention, its pixels are those of `targets`.
     pub fn g_buffer(
         &self,
         encoder: &mut CommandEncoder,
@@ -79,7 +80,7 @@ impl SceneRenderer {
     /// Records the light's shadow map: alpha-tested where surfaces are masked, both sides of all of them, without bias.
     ///
     /// # Panics
-    /// Where `target` was made for another kind of projection.
+    /// If `target` was made for another kind of projection.
     pub fn shadow_map(
         &self,
         encoder: &mut CommandEncoder,
@@ -96,7 +97,7 @@ impl SceneRenderer {
     /// `shadow_map` was recorded before with the same emitter and projection.
     ///
     /// # Panics
-    /// Where a target was made for another kind of projection.
+    /// If a target was made for another kind of projection.
     pub fn glass_map(
         &self,
         encoder: &mut CommandEncoder,
@@ -115,8 +116,8 @@ impl SceneRenderer {
         );
     }
 
-    /// Records the radiance of what the camera sees [W/(m^2 sr)] on `target`, which has the format given to
-    /// [`SceneRenderer::new`] and the size of `g_buffer`; what was there is lost. It is [`crate::shading::shade`] on the GPU:
+    /// Records the radiance of the camera's image [W/(m^2 sr)] on `target`, which has the format given to
+    /// [`SceneRenderer::new`] and the size of `g_buffer`, and is cleared first. It is [`crate::shading::shade`] on the GPU:
     /// Lambert surfaces under the frame's lights, or the sky, without the medium between them and the eye.
     ///
     /// `g_buffer` was recorded with the frame's camera.

@@ -1,4 +1,4 @@
-//! Lit surfaces: the sky and what glows, then one light after the other added to it.
+//! Lit surfaces: the sky and emission first, then one light after the other added.
 
 use tyndall::{
     LightInputs,
@@ -15,14 +15,15 @@ use wgpu::{
 };
 
 use super::{
+    binding::uniform_entry,
     error::GpuSceneError,
-    pipeline::{Layouts, cleared, uniform_entry},
+    pipeline::{Layouts, cleared},
     shaders::{self, Shader},
     targets::{Absent, GBufferTargets},
     uniforms::{ShadeLightUniform, ShadeViewUniform},
 };
 
-/// Adds to what is there.
+/// Adds to the target's colour.
 const ADD: BlendState = {
     let component = BlendComponent {
         src_factor: BlendFactor::One,
@@ -35,13 +36,13 @@ const ADD: BlendState = {
     }
 };
 
-/// What lights surfaces, besides the frame: one entry a light of it, in the same order.
+/// The lights' inputs for surfaces: one entry a light of the frame, in the same order.
 #[derive(Clone, Copy)]
 pub struct SurfaceLights<'a> {
     /// A light without a shadow map, glass or texture is unshadowed, untinted or white.
     pub inputs: &'a [LightInputs<'a>],
-    /// What each pixel's direct light is multiplied by (rgb), of the G-buffer's size: of a rectangular light, what
-    /// [`tyndall::EffectView::surface_light_visibility`] has. Lights that the slice does not reach have none.
+    /// Factors on each pixel's direct light (rgb), of the G-buffer's size: for a rectangular light the texture of
+    /// [`tyndall::EffectView::surface_light_visibility`]. Lights that the slice does not reach have none.
     pub visibility: &'a [Option<&'a TextureView>],
 }
 
@@ -83,7 +84,7 @@ impl ShadePipelines {
             ),
             view_layout,
             light_layout,
-            // Border colours are optional: the shader itself is black outside the picture.
+            // Border colours are optional: the shader itself is black outside the texture.
             picture_sampler: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("light texture"),
                 mag_filter: wgpu::FilterMode::Linear,

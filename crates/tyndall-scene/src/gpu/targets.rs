@@ -38,7 +38,7 @@ impl Target {
     }
 }
 
-/// What a camera sees: the first opaque surface of each pixel, and the tint of what is before it.
+/// A camera's G-buffer: the first opaque surface of each pixel, and the tint of the glass before it.
 pub struct GBufferTargets {
     size: [u32; 2],
     pub(super) depth: Target,
@@ -49,10 +49,10 @@ pub struct GBufferTargets {
 }
 
 impl GBufferTargets {
-    /// Makes the textures of a picture of this size [pixels].
+    /// Makes textures of this size [pixels].
     ///
     /// # Errors
-    /// Where the size is zero or beyond the device's limit.
+    /// [`GpuSceneError`] if the size is zero or beyond the device's limit.
     pub fn new(device: &Device, size: [u32; 2]) -> Result<Self, GpuSceneError> {
         let target = |label, format| Target::new(device, label, size, format);
         Ok(Self {
@@ -70,7 +70,7 @@ impl GBufferTargets {
         self.size
     }
 
-    /// Depth (`Depth32Float`) in the camera's convention; the far plane's value where nothing is seen.
+    /// Depth (`Depth32Float`) in the camera's convention; the far plane's value without a surface.
     pub fn depth(&self) -> &Texture {
         &self.depth.texture
     }
@@ -80,23 +80,23 @@ impl GBufferTargets {
         &self.depth.view
     }
 
-    /// World-space normals (`Rgba16Float`, unit length in rgb) that face the viewer; zero where nothing is seen.
+    /// World-space normals (`Rgba16Float`, unit length in rgb) that face the viewer; zero without a surface.
     pub fn normal(&self) -> &Texture {
         &self.normal.texture
     }
 
-    /// Linear base colour (`Rgba16Float`); zero where nothing is seen.
+    /// Linear base colour (`Rgba16Float`); zero without a surface.
     pub fn base_color(&self) -> &Texture {
         &self.base_color.texture
     }
 
-    /// Emitted radiance (`Rgba16Float`) [W/(m^2 sr)]; zero where nothing is seen.
+    /// Emitted radiance (`Rgba16Float`) [W/(m^2 sr)]; zero without a surface.
     pub fn emissive(&self) -> &Texture {
         &self.emissive.texture
     }
 
-    /// What light from the first opaque surface, or the sky, is multiplied by on its way through glass and blended
-    /// surfaces (`Rgba16Float`, 1 where there are none).
+    /// Factor of the glass and blended surfaces on the light from the first opaque surface, or the sky (`Rgba16Float`, 1
+    /// where there are none).
     pub fn view_tint(&self) -> &Texture {
         &self.view_tint.texture
     }
@@ -128,7 +128,7 @@ impl ShadowMapTarget {
     /// Makes the texture: `size` texels a face, one layer, or six for a cube.
     ///
     /// # Errors
-    /// Where the size is zero or beyond the device's limit.
+    /// [`GpuSceneError`] if the size is zero or beyond the device's limit.
     pub fn new(
         device: &Device,
         projection: &ShadowProjection,
@@ -190,7 +190,7 @@ impl GlassMapTarget {
     /// Makes the texture: as many texels and faces as the light's shadow map.
     ///
     /// # Errors
-    /// Where the number of layers is beyond the device's limit.
+    /// [`GpuSceneError`] if the number of layers is beyond the device's limit.
     pub fn new(device: &Device, shadow_map: &ShadowMapTarget) -> Result<Self, GpuSceneError> {
         let size = shadow_map.size();
         let layers = shadow_map.faces.len() as u32 * GLASS_LAYERS;
@@ -233,7 +233,7 @@ impl GlassMapTarget {
     }
 }
 
-/// What is bound where a light has no such picture; nothing reads it.
+/// Textures to bind for those that a light does not have; nothing reads them.
 pub(super) struct Absent {
     pub(super) shadow_map: TextureView,
     pub(super) glass: TextureView,

@@ -1,4 +1,4 @@
-//! Pictures as textures: mip chains of base-colour textures, and lights' textures.
+//! Textures on the device: base-colour textures with their mip chains, and lights' textures.
 
 use half::f16;
 use tyndall::cpu::LightTexture;
@@ -24,7 +24,7 @@ pub(super) fn upload(
     Ok(create(device, queue, &what, &MipTexture::new(texture)))
 }
 
-/// What a material without a texture samples.
+/// Uploads the texture that materials without one sample.
 pub(super) fn upload_white(device: &Device, queue: &Queue) -> TextureView {
     let white = MipTexture::new(&Texture {
         size: [1, 1],
@@ -62,7 +62,7 @@ fn create(device: &Device, queue: &Queue, label: &str, mips: &MipTexture) -> Tex
 /// (`Rgba32Float`, else `Rgba16Float`).
 ///
 /// # Errors
-/// Where the texture is empty or beyond the device's limit, or has not as many texels as its size says.
+/// [`GpuSceneError`] if the texture is empty or beyond the device's limit, or has not as many texels as its size says.
 pub fn upload_light_texture(
     device: &Device,
     queue: &Queue,

@@ -1,6 +1,6 @@
-//! Where the scene is seen from: a camera or a light, as one uniform.
+//! The viewpoint of a camera or a light, as one uniform.
 //!
-//! Vertices are taken relative to the eye before they are projected, so that what is near keeps its precision
+//! Vertices are taken relative to the eye before they are projected, so that near surfaces keep their precision
 //! in a world of many kilometres; matrices are put together in f64.
 
 use bytemuck::{Pod, Zeroable};
@@ -25,9 +25,9 @@ pub(super) struct ViewUniform {
 }
 
 impl ViewUniform {
-    /// What a camera sees.
+    /// The view of a camera.
     pub(super) fn of_camera(camera: &Camera) -> Self {
-        // The basis is the same whatever the picture's size.
+        // The basis does not depend on the image's size.
         let rays = CameraRays::new(camera, [1, 1]);
         let viewer = match camera.projection {
             Projection::Perspective { .. } => DVec4::W,
@@ -42,7 +42,7 @@ impl ViewUniform {
         )
     }
 
-    /// What a light sees: one view a face of its shadow map. None where a cube is given to a light without a position.
+    /// The views of a light, one a face of its shadow map. There are none if a cube is given to a light without a position.
     pub(super) fn of_light(emitter: &Emitter, projection: &ShadowProjection) -> Vec<Self> {
         let reversed = reversed_depth(projection);
         faces(emitter, projection)
@@ -80,7 +80,7 @@ const FLIP_DEPTH: DMat4 = DMat4::from_cols(
     DVec4::new(0.0, 0.0, 1.0, 1.0),
 );
 
-/// Whether a shadow map holds 1 at its near plane.
+/// True if a shadow map holds 1 at its near plane.
 pub(super) fn reversed_depth(projection: &ShadowProjection) -> bool {
     match *projection {
         ShadowProjection::Single { reversed_depth, .. }
@@ -88,7 +88,7 @@ pub(super) fn reversed_depth(projection: &ShadowProjection) -> bool {
     }
 }
 
-/// A point near what the light's map shows: the light itself, or, of a sun, the middle of the map.
+/// A point near the surfaces on the light's map: the light itself or, for a sun, the middle of the map.
 fn light_origin(emitter: &Emitter, clip_from_world: DMat4) -> Vec3 {
     match *emitter {
         Emitter::Point { position, .. } | Emitter::Spot { position, .. } => position.into(),

@@ -7,12 +7,15 @@ use gltf::{
     buffer,
 };
 
-use super::{Refusal, broken, buffers::Buffers, called};
+use super::{
+    buffers::Buffers,
+    error::{Refusal, broken, called},
+};
 
 /// Most elements of an accessor without data of its own (sparse over zeros), so that a few bytes cannot claim gigabytes.
 const MAX_IMPLICIT_ELEMENTS: usize = 1 << 24;
 
-/// Which component types an attribute may have besides float.
+/// The component types that an attribute may have besides float.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Integers {
     /// None.

@@ -9,11 +9,9 @@ use gltf::{
 };
 
 use super::{
-    Refusal,
     accessor::{Integers, read_vectors},
-    broken,
     buffers::Buffers,
-    called,
+    error::{Refusal, broken, called},
 };
 use crate::{
     animation::{Curve, Interpolation, NodeAnimation, Placement},
@@ -50,8 +48,8 @@ pub(super) fn read(
     Ok(read)
 }
 
-/// The scene's node and what of it moves; `None` where the node is not part of the scene. From the JSON, because the
-/// `gltf` crate takes both on trust.
+/// The scene's node and its property that moves; `None` if the node is not part of the scene. Reads the JSON, because
+/// the `gltf` crate takes both on trust.
 fn target(
     channel: &json::animation::Channel,
     scene_node: &[Option<usize>],

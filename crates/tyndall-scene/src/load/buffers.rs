@@ -1,4 +1,4 @@
-//! Bytes: buffers, views of them, and whatever URIs refer to.
+//! Bytes of buffers, of views into them, and of files that URIs refer to.
 
 use std::{
     borrow::Cow,
@@ -11,7 +11,7 @@ use data_url::DataUrl;
 use gltf::{Document, buffer};
 use percent_encoding::percent_decode_str;
 
-use super::{Refusal, broken, called};
+use super::error::{Refusal, broken, called};
 
 /// The document's buffers, each loaded when it is first needed.
 pub(super) struct Buffers<'a> {
@@ -21,9 +21,9 @@ pub(super) struct Buffers<'a> {
     loaded: Vec<OnceCell<Vec<u8>>>,
 }
 
-/// A picture's file.
-pub(super) struct Picture<'a> {
-    /// What messages call it.
+/// An image's file.
+pub(super) struct ImageFile<'a> {
+    /// The image's name in messages.
     pub(super) place: String,
     /// The file as it is.
     pub(super) bytes: Cow<'a, [u8]>,
@@ -64,12 +64,12 @@ impl<'a> Buffers<'a> {
             })
     }
 
-    /// A texture's picture: in a view, in its URI, or beside the document; `None` where the texture has none.
-    pub(super) fn picture(
+    /// A texture's image: in a view, in its URI, or beside the document; `None` if the texture has none.
+    pub(super) fn image(
         &self,
         texture: &gltf::Texture<'_>,
-    ) -> Result<Option<Picture<'_>>, Refusal> {
-        // From the JSON, because the `gltf` crate panics where `source` or `mimeType` is missing.
+    ) -> Result<Option<ImageFile<'_>>, Refusal> {
+        // Reads the JSON, because the `gltf` crate panics where `source` or `mimeType` is missing.
         let root = self.document.as_json();
         let index = root.textures[texture.index()].source.value();
         let Some(image) = root.images.get(index) else {
@@ -90,7 +90,7 @@ impl<'a> Buffers<'a> {
                 .map_err(|why| broken(&place, why))?,
             (None, None) => return Err(broken(place, "has neither `uri` nor `bufferView`")),
         };
-        Ok(Some(Picture { place, bytes }))
+        Ok(Some(ImageFile { place, bytes }))
     }
 
     fn buffer(&self, index: usize) -> Result<&[u8], Refusal> {
@@ -146,7 +146,7 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// What comes before the first colon, if it looks like RFC 3986's scheme.
+/// The part before the first colon, if it looks like RFC 3986's scheme.
 fn scheme(uri: &str) -> Option<&str> {
     uri.split_once(':')
         .map(|(scheme, _)| scheme)

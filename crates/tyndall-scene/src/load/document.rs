@@ -8,7 +8,7 @@ use gltf::{
     },
 };
 
-use super::{Refusal, broken, called};
+use super::error::{Refusal, broken, called};
 
 /// Extensions a file may require: those that are read, and those that a Lambert surface can do without.
 const SUPPORTED_EXTENSIONS: &[&str] = &[
@@ -121,7 +121,7 @@ fn check_attributes(root: &json::Root) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The `gltf` crate's validation, without what it refuses though glTF allows it and nothing here relies on it.
+/// The `gltf` crate's validation, but for refusals of things that glTF allows and nothing here relies on.
 fn check_indices(root: &json::Root) -> Result<(), Refusal> {
     let mut problems = Vec::new();
     root.validate(root, json::Path::new, &mut |path, error| {

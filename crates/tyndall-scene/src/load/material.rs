@@ -1,20 +1,23 @@
-//! Materials and their pictures.
+//! Materials and their textures.
 
 use std::{collections::HashMap, io::Cursor};
 
 use gltf::{material::AlphaMode, texture::WrappingMode};
 use image::{ImageReader, Limits};
 
-use super::{Refusal, broken, buffers::Buffers, called};
+use super::{
+    buffers::Buffers,
+    error::{Refusal, broken, called},
+};
 use crate::scene::{Blocking, Material, Texture, Wrap};
 
-/// Largest width and height of a picture [texels].
-const MAX_PICTURE_SIDE: u32 = 16384;
+/// Largest width and height of an image [texels].
+const MAX_IMAGE_SIDE: u32 = 16384;
 
 /// glTF's `alphaCutoff` where it is left out.
 const DEFAULT_ALPHA_CUTOFF: f32 = 0.5;
 
-/// The materials that the scene uses, and their pictures.
+/// The materials that the scene uses, and their textures.
 pub(super) struct Materials<'a> {
     buffers: &'a Buffers<'a>,
     materials: Vec<Material>,
@@ -74,16 +77,16 @@ impl<'a> Materials<'a> {
         Ok(material)
     }
 
-    /// `None` for textures whose picture only an extension knows.
+    /// `None` for textures whose image only an extension knows.
     fn texture_index(&mut self, source: &gltf::Texture<'_>) -> Result<Option<usize>, Refusal> {
         if let Some(&index) = self.texture_indices.get(&source.index()) {
             return Ok(Some(index));
         }
-        let Some(picture) = self.buffers.picture(source)? else {
+        let Some(file) = self.buffers.image(source)? else {
             return Ok(None);
         };
-        let (size, texels) = decode(&picture.bytes)
-            .map_err(|error| broken(picture.place, format!("cannot be decoded: {error}")))?;
+        let (size, texels) = decode(&file.bytes)
+            .map_err(|error| broken(file.place, format!("cannot be decoded: {error}")))?;
         let sampler = source.sampler();
         self.textures.push(Texture {
             size,
@@ -143,17 +146,18 @@ fn check_values(material: &Material) -> Result<(), Refusal> {
     }
 }
 
-type Picture = ([u32; 2], Vec<[u8; 4]>);
+/// Size and texels.
+type Decoded = ([u32; 2], Vec<[u8; 4]>);
 
-fn decode(bytes: &[u8]) -> image::ImageResult<Picture> {
+fn decode(bytes: &[u8]) -> image::ImageResult<Decoded> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_PICTURE_SIDE);
-    limits.max_image_height = Some(MAX_PICTURE_SIDE);
+    limits.max_image_width = Some(MAX_IMAGE_SIDE);
+    limits.max_image_height = Some(MAX_IMAGE_SIDE);
     reader.limits(limits);
-    let picture = reader.decode()?.into_rgba8();
-    let texels = picture.pixels().map(|pixel| pixel.0).collect();
-    Ok((picture.dimensions().into(), texels))
+    let image = reader.decode()?.into_rgba8();
+    let texels = image.pixels().map(|pixel| pixel.0).collect();
+    Ok((image.dimensions().into(), texels))
 }
 
 fn wrap(mode: WrappingMode) -> Wrap {

@@ -6,11 +6,9 @@ use glam::{Mat2, Vec2, Vec3};
 use gltf::{Semantic, mesh::Mode};
 
 use super::{
-    Refusal,
     accessor::{Integers, read_indices, read_vectors},
-    broken,
     buffers::Buffers,
-    called,
+    error::{Refusal, broken, called},
     material::Materials,
 };
 use crate::scene::{Material, Mesh, Primitive, Texture};
@@ -68,7 +66,7 @@ impl<'a> Meshes<'a> {
         (self.meshes, materials, textures)
     }
 
-    /// `None` for points, lines, and what has too few vertices for a triangle, or none.
+    /// `None` for points, lines, and primitives with too few vertices for a triangle, or none.
     fn read_primitive(
         &mut self,
         source: &gltf::Primitive<'_>,
@@ -199,7 +197,7 @@ impl<'a> Meshes<'a> {
     }
 }
 
-/// How corners are joined to triangles.
+/// The rule that joins corners to triangles.
 #[derive(Clone, Copy)]
 enum Topology {
     List,
@@ -240,7 +238,7 @@ impl Topology {
     }
 }
 
-/// `KHR_texture_transform`: scale, then rotate counter-clockwise as seen in the picture, then move.
+/// `KHR_texture_transform`: scale, then rotate counter-clockwise as seen in the texture, then move.
 fn transform_uvs(
     uvs: &mut [Vec2],
     transform: &gltf::texture::TextureTransform<'_>,
@@ -260,7 +258,7 @@ fn transform_uvs(
     }
 }
 
-/// `None` where a normal has no direction; the file's normals are not to be trusted then.
+/// `None` if a normal has no direction; the file's normals are not to be trusted then.
 fn unit_normals(normals: Vec<Vec3>) -> Option<Vec<Vec3>> {
     normals.into_iter().map(Vec3::try_normalize).collect()
 }

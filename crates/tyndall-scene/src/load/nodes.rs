@@ -6,7 +6,7 @@ use glam::{Affine3A, Mat4, Quat, Vec3};
 use gltf::{Document, json, khr_lights_punctual::Kind, scene::Transform};
 use tyndall::frame::{Emitter, Projection};
 
-use super::{Refusal, broken, called};
+use super::error::{Refusal, broken, called};
 use crate::{
     geometry::world_from_nodes,
     scene::{Node, Scene},
@@ -128,7 +128,7 @@ fn read_transform(transform: Transform) -> Result<Affine3A, Refusal> {
     }
 }
 
-/// From the JSON, because the `gltf` crate's camera panics where type and values do not go together.
+/// Reads the JSON, because the `gltf` crate's camera panics where type and values do not go together.
 fn read_camera(camera: &json::Camera, index: usize) -> Result<Projection, Refusal> {
     use json::{camera::Type, validation::Checked};
     let place = called("camera", index, camera.name.as_deref());

@@ -22,13 +22,13 @@ pub(super) struct Tree {
     bvh: Bvh2,
     /// Largest coordinate of the triangles [m].
     scale: f32,
-    /// What is added to the places of `bvh`'s leaves.
+    /// Offset of `bvh`'s leaves in the order of all triangles.
     offset: usize,
 }
 
 impl Tree {
-    /// A tree over the triangles `chosen`. It calls the n-th of its leaves' triangles `order.len() + n`, and appends to
-    /// `order` what they were called before.
+    /// Builds a tree over the triangles `chosen`. It renumbers the n-th of its leaves' triangles to `order.len() + n`, and
+    /// appends their old numbers to `order`.
     pub(super) fn new(triangles: &[[Vec3; 3]], chosen: &[u32], order: &mut Vec<u32>) -> Self {
         let boxes: Vec<Aabb> = chosen
             .iter()
@@ -37,7 +37,7 @@ impl Tree {
         let scale = boxes.iter().fold(0.0, |scale: f32, b| {
             scale.max(b.min.abs().max(b.max.abs()).max_element())
         });
-        // The builder measures time whether one wants to know or not.
+        // The builder always measures its time.
         let mut build_time = Duration::ZERO;
         let mut bvh = if boxes.is_empty() {
             Bvh2::default()
@@ -53,7 +53,7 @@ impl Tree {
         Self { bvh, scale, offset }
     }
 
-    /// True where there are no triangles.
+    /// True if there are no triangles.
     pub(super) fn is_empty(&self) -> bool {
         self.bvh.nodes.is_empty()
     }
@@ -129,7 +129,7 @@ impl Tree {
         first..first + leaf.prim_count as usize
     }
 
-    /// The ray from where it enters the tree: near the boxes, f32 is precise enough for them.
+    /// Starts the ray where it enters the tree: near the boxes, f32 is precise enough for them.
     fn enter(&self, ray: &Ray, [from, to]: [f64; 2]) -> Option<Slabs> {
         let root = self.bvh.nodes.first()?.aabb;
         let (min, max) = (root.min.as_dvec3(), root.max.as_dvec3());
@@ -151,7 +151,7 @@ impl Tree {
     }
 }
 
-/// Finite where a direction has no extent along an axis: zero times infinity would be NaN.
+/// The inverse, kept finite for a direction without extent along an axis: zero times infinity would be NaN.
 fn finite_inverse(x: f64) -> f64 {
     const LARGEST: f64 = 1e30;
     (1.0 / x).clamp(-LARGEST, LARGEST)

@@ -1,4 +1,4 @@
-//! What the camera sees.
+//! A camera's depth, normals and colours by ray casting.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -6,26 +6,26 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use tyndall::{cpu::Progress, frame::Camera};
 
-use super::{Hit, Tracer};
+use super::tracer::{Hit, Tracer};
 use crate::view::{Ray, View};
 
-/// What the camera sees, one entry a pixel in every array, row by row from the top left.
+/// A camera's depth, normals and colours, one entry a pixel in every array, row by row from the top left.
 ///
-/// Where a ray meets no opaque surface between the near and the far plane, depth is the far plane's, the normal and
-/// the colours are zero; the view tint is there all the same.
+/// A ray that meets no opaque surface between the near and the far plane has the far plane's depth, a zero normal and zero
+/// colours; the view tint is there all the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GBuffer {
     /// Width and height [pixels].
     pub size: [u32; 2],
-    /// What a depth buffer holds, in the camera's convention.
+    /// Depth-buffer values, in the camera's convention.
     pub depth: Vec<f32>,
     /// World-space unit normal on the viewer's side.
     pub normal: Vec<[f32; 3]>,
     /// Linear RGB reflectance.
     pub base_color: Vec<[f32; 3]>,
-    /// Radiance that the surface gives off by itself [W/(m^2 sr)].
+    /// Emitted radiance [W/(m^2 sr)].
     pub emissive: Vec<[f32; 3]>,
-    /// What the glass and blended surfaces in front of the surface multiply its light by.
+    /// Factor on the surface's light by the glass and blended surfaces in front of it.
     pub view_tint: Vec<[f32; 3]>,
 }
 
@@ -118,7 +118,7 @@ impl Tracer {
         [r, g, b]
     }
 
-    /// Texture coordinates where a ray meets the triangle's plane, inside the triangle or not.
+    /// Texture coordinates of the point where a ray meets the triangle's plane, inside the triangle or not.
     fn uv_on_plane(&self, triangle: usize, ray: &Ray) -> DVec2 {
         let [a, b, c] = self.geometry.positions[triangle].map(|p| p.as_dvec3());
         let (ab, ac) = (b - a, c - a);
@@ -143,7 +143,7 @@ mod tests {
     use super::*;
     use crate::{
         scene::{Blocking, Scene, Texture, Wrap},
-        trace::test_scenes::{ball, material, opaque, quad, scene},
+        test_scenes::{ball, material, opaque, quad, scene},
     };
 
     /// Looks along -z from z = 4; 90 degrees high and wide, or 8 m.
@@ -186,12 +186,12 @@ mod tests {
     fn a_ball_has_the_depth_and_the_normals_of_a_ball() {
         let tracer_scene = opaque(&ball(Vec3::ZERO, 1.0, 96));
         for camera in cameras() {
-            let picture = g_buffer(&tracer_scene, &camera, [64, 64]);
+            let image = g_buffer(&tracer_scene, &camera, [64, 64]);
             let rays = tyndall::camera::CameraRays::new(&camera, [64, 64]);
             let mut hits = 0;
-            for (i, &depth) in picture.depth.iter().enumerate() {
+            for (i, &depth) in image.depth.iter().enumerate() {
                 if depth == View::new(&camera, [64, 64]).far_value() {
-                    assert_eq!(picture.normal[i], [0.0; 3]);
+                    assert_eq!(image.normal[i], [0.0; 3]);
                     continue;
                 }
                 hits += 1;
@@ -199,7 +199,7 @@ mod tests {
                 let point = ray.at(ray.length);
                 // A polyhedron of 96 rings is at most 5.4e-4 inside its ball.
                 assert!((0.9994..1.00001).contains(&point.length()), "{point}");
-                let normal = DVec3::from(picture.normal[i].map(f64::from));
+                let normal = DVec3::from(image.normal[i].map(f64::from));
                 // Its flat sides turn by at most 0.033 from one to the next.
                 assert!(
                     normal.is_normalized() && normal.dot(point) > 0.9992,
@@ -215,8 +215,8 @@ mod tests {
         let front = quad(vec3(-9.0, -9.0, 0.0), 18.0 * Vec3::X, 18.0 * Vec3::Y);
         let back = front.map(|[a, b, c]| [a, c, b]);
         for triangles in [front, back] {
-            let picture = g_buffer(&opaque(&triangles), &cameras()[0], [4, 4]);
-            assert_eq!(picture.normal, [[0.0, 0.0, 1.0]; 16]);
+            let image = g_buffer(&opaque(&triangles), &cameras()[0], [4, 4]);
+            assert_eq!(image.normal, [[0.0, 0.0, 1.0]; 16]);
         }
     }
 
@@ -231,8 +231,8 @@ mod tests {
             (vec![wall(3.6), wall(-12.1)], 16.0),
         ] {
             for camera in cameras() {
-                let picture = g_buffer(&opaque(&walls.concat()), &camera, [5, 5]);
-                for depth in picture.depth {
+                let image = g_buffer(&opaque(&walls.concat()), &camera, [5, 5]);
+                for depth in image.depth {
                     let found = tyndall::camera::CameraRays::new(&camera, [5, 5]).view_depth(depth);
                     // Not reversed, f32 near 1 is coarse: 2 / 2^25 of 16^2 / 0.5.
                     assert!(
@@ -260,15 +260,15 @@ mod tests {
         let mut wall = opaque(&pane(0.0));
         wall.meshes[0].primitives[0].material = 1;
         both.materials.extend(wall.materials);
-        let picture = g_buffer(&both, &cameras()[0], [3, 3]);
+        let image = g_buffer(&both, &cameras()[0], [3, 3]);
         // Without the wall, all three panes tint the far plane.
-        assert_eq!(picture.view_tint, [[0.125, 0.015_625, 0.0]; 9]);
+        assert_eq!(image.view_tint, [[0.125, 0.015_625, 0.0]; 9]);
         both.meshes[0]
             .primitives
             .extend(wall.meshes.remove(0).primitives);
-        let picture = g_buffer(&both, &cameras()[0], [3, 3]);
-        assert_eq!(picture.view_tint, [[0.25, 0.0625, 0.0]; 9]);
-        assert_eq!(picture.base_color, [[0.5; 3]; 9]);
+        let image = g_buffer(&both, &cameras()[0], [3, 3]);
+        assert_eq!(image.view_tint, [[0.25, 0.0625, 0.0]; 9]);
+        assert_eq!(image.base_color, [[0.5; 3]; 9]);
     }
 
     /// A checkerboard of 256 texels over 8 m, seen from so far that a pixel covers 2^n texels, has the colour of level n:

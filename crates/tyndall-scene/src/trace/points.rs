@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Hit, Tracer};
+use super::tracer::{Hit, Tracer};
 
 /// The ratios of a sequence that fills the unit cube evenly, any stretch of it (Roberts 2018): powers of 1 / x, where
 /// x^4 = x + 1.
@@ -59,9 +59,9 @@ mod tests {
     use glam::{Vec3, vec3};
 
     use super::*;
-    use crate::trace::test_scenes::{opaque, quad};
+    use crate::test_scenes::{opaque, quad};
 
-    /// Two squares, one of twice the other's edge: any stretch of the cloud holds them four to one, and its boxes evenly.
+    /// Any stretch of a cloud over two squares, one of twice the other's edge, holds them four to one, and its boxes evenly.
     #[test]
     fn points_are_even_over_the_area() {
         let mut soup = quad(Vec3::ZERO, Vec3::X, Vec3::Z).to_vec();

@@ -1,4 +1,4 @@
-//! What a material does to light, ready for lookups.
+//! A material's effect on light, ready for lookups.
 
 use glam::{DVec2, DVec3, DVec4};
 
@@ -12,9 +12,9 @@ pub(super) struct Surface {
     base_color: DVec4,
     texture: Option<usize>,
     blocking: Blocking,
-    /// Radiance it gives off by itself [W/(m^2 sr)].
+    /// Emitted radiance [W/(m^2 sr)].
     pub(super) emissive: [f32; 3],
-    /// What light is multiplied by, where that is the same all over the surface.
+    /// Tint of the surface if it is one all over.
     pub(super) uniform: Option<DVec3>,
 }
 
@@ -31,7 +31,7 @@ impl Surface {
         surface
     }
 
-    /// True where light and view rays can end here.
+    /// True if light and view rays can end here.
     pub(super) fn can_block(&self) -> bool {
         match self.blocking {
             Blocking::Opaque | Blocking::Masked { .. } => self.uniform != Some(DVec3::ONE),
@@ -39,7 +39,7 @@ impl Surface {
         }
     }
 
-    /// True where it is glass that changes the light's colour somewhere.
+    /// True if it is glass that changes the light's colour somewhere.
     pub(super) fn is_tinted_glass(&self) -> bool {
         match self.blocking {
             Blocking::Opaque | Blocking::Masked { .. } => false,
@@ -47,7 +47,7 @@ impl Surface {
         }
     }
 
-    /// Its texture.
+    /// The material's texture.
     pub(super) fn texture<'a>(&self, textures: &'a [MipTexture]) -> Option<&'a MipTexture> {
         self.texture.map(|t| &textures[t])
     }
@@ -59,14 +59,14 @@ impl Surface {
             * self.base_color
     }
 
-    /// Linear RGBA at one level of its texture.
+    /// Linear RGBA at one level of the texture.
     pub(super) fn color_at_level(&self, textures: &[MipTexture], uv: DVec2, level: usize) -> DVec4 {
         self.texture(textures)
             .map_or(DVec4::ONE, |t| t.bilinear(uv, level))
             * self.base_color
     }
 
-    /// What light is multiplied by where the surface has this colour: zero where it blocks, one where it is not there.
+    /// Factor on light where the surface has this colour: zero where it blocks, one where it is not there.
     pub(super) fn tint(&self, color: DVec4) -> DVec3 {
         let [r, g, b, alpha] = color.to_array();
         let rgb = DVec3::new(r, g, b);
@@ -79,13 +79,13 @@ impl Surface {
         }
     }
 
-    /// What light is multiplied by at a point of the surface.
+    /// Factor on light at a point of the surface.
     pub(super) fn tint_at(&self, textures: &[MipTexture], uv: DVec2) -> DVec3 {
         self.uniform
             .unwrap_or_else(|| self.tint(self.color_at_level(textures, uv, 0)))
     }
 
-    /// Smallest alpha that blocks, of a surface with holes.
+    /// Smallest alpha that blocks, for a surface with holes.
     pub(super) fn cutoff(&self) -> Option<f64> {
         match self.blocking {
             Blocking::Masked { cutoff } => Some(f64::from(cutoff)),

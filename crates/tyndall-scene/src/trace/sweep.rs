@@ -13,15 +13,16 @@
 //! distance; a corner's side and where an edge is cut depend only on coordinates. So surfaces that are closed leave no
 //! gap between their triangles' shades, and triangles within the plane shade nothing (they have no thickness).
 //!
-//! **Tolerances.** What light meets less than [`CLEARANCE`] of the scene's size before the ray doesn't shade it: the
-//! surface that the ray lies in or starts on. A ray that ends on a surface may pass it by rounding; it is then shaded
-//! only on what is beyond. Closer to a local light than the same share of the way, nothing shades either. Where the light is within [`PARALLEL`] of the ray's own line, the piece of plane has no width and the
-//! ray itself is cast through the scene.
+//! **Tolerances.** Surfaces that light meets less than [`CLEARANCE`] of the scene's size before the ray don't shade it:
+//! the ray lies in them or starts on them. A ray that ends on a surface may pass it by rounding; only the rest beyond the
+//! surface is shaded then. Closer to a local light than the same share of its distance, nothing shades either. A light
+//! within [`PARALLEL`] of the ray's own line makes a piece of plane without width; the ray itself is cast through the scene
+//! then.
 
 use glam::{DVec2, DVec3, Vec3, Vec3A, Vec4};
 use tyndall::cpu::{LightSource, Occluders, Shade};
 
-use super::{Tracer, texels};
+use super::{texels, tracer::Tracer};
 use crate::view::Ray;
 
 /// Surfaces closer to the ray along the light than this share of the scene's largest coordinate don't shade it.
@@ -83,7 +84,7 @@ impl Tracer {
         });
     }
 
-    /// The light is on the ray's own line: what the ray meets shades all that is beyond it as seen from the light.
+    /// Casts the ray itself, for a light on its own line: a surface shades all that is beyond it as seen from the light.
     fn line_shades(&self, walk: &LineWalk, shades: &mut Vec<Shade>) {
         let clearance = CLEARANCE * self.scale();
         let range = [clearance, walk.span];
@@ -104,10 +105,10 @@ impl Tracer {
     }
 }
 
-/// What lies between a view ray and a light.
+/// All points between a view ray and a light.
 enum Swept {
     Plane(Sweep),
-    /// The light is on the ray's line at this distance from the ray's origin.
+    /// A light on the ray's line, at this distance from the ray's origin.
     Line(f64),
 }
 
@@ -174,7 +175,7 @@ impl Swept {
 }
 
 impl Sweep {
-    /// Where a triangle crosses the plane; `None` where all of it is on one side.
+    /// The cut of a triangle with the plane; `None` if all of it is on one side.
     fn cut(&self, corners: &[Vec3; 3]) -> Option<Cut> {
         let relative = corners.map(|p| p.as_dvec3() - self.origin);
         let distance = relative.map(|q| q.dot(self.normal));
@@ -207,7 +208,7 @@ impl Sweep {
         })
     }
 
-    /// The stretch of the ray that a piece of a cut, given as shares of its way from end to end, shades.
+    /// The stretch of the ray that a piece of a cut, given as shares of its length from end to end, shades.
     fn shade(&self, cut: &Cut, piece: [f64; 2], tint: DVec3) -> Option<Shade> {
         let [from, to] = piece.map(|t| match t {
             0.0 => cut.ends[0],
@@ -299,12 +300,12 @@ impl Region {
 
 /// A walk along the ray's line, away from a light on it.
 struct LineWalk {
-    /// From the light.
+    /// Starts at the light.
     ray: Ray,
     light_at: f64,
-    /// 1 where the walk goes the ray's way, -1 where it goes against it.
+    /// 1 if the walk goes in the ray's direction, -1 if it goes against it.
     side: f64,
-    /// How far the ray reaches from the light on this side [m].
+    /// Length of the ray on this side of the light [m].
     span: f64,
     length: f64,
 }

@@ -3,12 +3,10 @@
 use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 use tyndall::cpu::{LightSource, Occluders, Shade};
 
-use super::{
-    Tracer,
-    test_scenes::{Random, ball, block, material, opaque, quad, scene, soup},
-};
+use super::Tracer;
 use crate::{
     scene::{Blocking, Scene, Texture, Wrap},
+    test_scenes::{Random, ball, block, material, opaque, quad, scene, soup},
     view::Ray,
 };
 
@@ -31,7 +29,7 @@ fn shades(tracer: &Tracer, ray: &Ray, length: f64, light: LightSource) -> Vec<Sh
     shades
 }
 
-/// What is left of the light at a point of a ray, by its shades.
+/// The rest of the light at a point of a ray, by its shades.
 fn by_shades(shades: &[Shade], s: f64) -> DVec3 {
     shades
         .iter()
@@ -40,7 +38,7 @@ fn by_shades(shades: &[Shade], s: f64) -> DVec3 {
         .product()
 }
 
-/// What is left of the light at a point, by a shadow ray.
+/// The rest of the light at a point, by a shadow ray.
 fn by_shadow_ray(tracer: &Tracer, point: DVec3, light: LightSource, size: f64) -> DVec3 {
     let (direction, distance) = match light {
         LightSource::Direction(d) => (-DVec3::from(d), 100.0 * size),
@@ -109,7 +107,7 @@ fn compare(scene: &Scene, rays: usize, tolerance: f64, light: &LightOf, seed: u6
             origin: from,
             direction: (to - from).normalize(),
         };
-        // Every second ray goes on through what it meets.
+        // Every second ray goes on through the surfaces it meets.
         let length = tracer
             .closest(&ray, [0.0, 6.0 * size])
             .filter(|_| random.unit() < 0.5)
@@ -232,7 +230,7 @@ fn opaque_shades_are_those_of_shadow_rays() {
     }
 }
 
-/// A wavy wall in the cube's middle, with its picture once across in `x` and `y`.
+/// A wavy wall in the cube's middle, with its texture once across in `x` and `y`.
 fn wall() -> Vec<[Vec3; 3]> {
     let point = |i: i32, j: i32| {
         vec3(
@@ -255,7 +253,7 @@ fn wall() -> Vec<[Vec3; 3]> {
         .collect()
 }
 
-fn picture(size: [u32; 2], wrap: Wrap, seed: u64) -> Texture {
+fn noise_texture(size: [u32; 2], wrap: Wrap, seed: u64) -> Texture {
     let mut random = Random::new(seed);
     let mut byte = || (256.0 * random.unit()) as u8;
     Texture {
@@ -267,13 +265,13 @@ fn picture(size: [u32; 2], wrap: Wrap, seed: u64) -> Texture {
     }
 }
 
-fn pictured(blocking: Blocking, size: [u32; 2], wrap: Wrap) -> Scene {
+fn textured(blocking: Blocking, size: [u32; 2], wrap: Wrap) -> Scene {
     let uv = |p: Vec3| vec2(1.3 * p.x + 0.2, 1.7 * p.y - 0.3);
     scene(
         &wall(),
         uv,
         material(blocking, [0.9, 0.8, 1.0, 0.9]),
-        Some(picture(size, wrap, 3)),
+        Some(noise_texture(size, wrap, 3)),
     )
 }
 
@@ -284,7 +282,7 @@ fn holes_are_those_of_shadow_rays() {
         ([5, 7], Wrap::MirroredRepeat),
         ([32, 32], Wrap::ClampToEdge),
     ] {
-        let scene = pictured(Blocking::Masked { cutoff: 0.5 }, size, wrap);
+        let scene = textured(Blocking::Masked { cutoff: 0.5 }, size, wrap);
         for (name, light) in LIGHTS {
             let found = compare(&scene, RAYS, 0.0, light, 12);
             found.check(&format!("{wrap:?}, {name}"), 0.0, 1e-3);
@@ -319,7 +317,7 @@ fn plain_glass_tints_as_along_shadow_rays() {
 #[test]
 fn textured_glass_is_piecewise_constant_but_right_on_average() {
     let mut random = Random::new(14);
-    let scene = pictured(
+    let scene = textured(
         Blocking::Transmissive { transmission: 1.0 },
         [16, 8],
         Wrap::Repeat,
@@ -455,7 +453,7 @@ fn the_surface_at_the_ray_s_end_shades_from_behind_only() {
     }
 }
 
-/// The same on real models, where the shared assets are present.
+/// Compares shades with shadow rays on real models, where the shared assets are present.
 #[test]
 fn models_shades_are_those_of_shadow_rays() {
     let assets = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
@@ -474,7 +472,7 @@ fn models_shades_are_those_of_shadow_rays() {
     }
 }
 
-/// The comparison must see what is wrong: light from elsewhere, here.
+/// The comparison must notice a wrong light: one from elsewhere, here.
 #[test]
 #[should_panic(expected = "wrong")]
 fn the_comparison_can_fail() {

@@ -1,8 +1,8 @@
-//! How the tint of a textured surface changes along a straight line on it.
+//! Tints of a textured surface along a straight line on it.
 //!
 //! Between the lines through texel centres a bilinear texture is smooth: along a line across such a cell its alpha is a
 //! quadratic polynomial. So the borders of an alpha-tested surface's holes are found exactly, and glass gets a constant
-//! tint a cell, that of the middle of the line's way across it.
+//! tint a cell, that of the middle of the line's part in it.
 
 use glam::{DVec2, DVec3};
 
@@ -12,8 +12,8 @@ use crate::texture::MipTexture;
 /// Most texels that a line may cross in either direction; longer ones use a coarser level of the texture.
 const MOST_CELLS: f64 = 4096.0;
 
-/// Calls `emit` with the pieces of the line between two texture coordinates, as shares `[from, to]` of its way, on which
-/// light is changed, and with what it is multiplied by there.
+/// Calls `emit` with the pieces of the line between two texture coordinates, as shares `[from, to]` of its length, on which
+/// the surface changes light, and with its tint there.
 pub(super) fn pieces(
     surface: &Surface,
     textures: &[MipTexture],
@@ -47,10 +47,14 @@ pub(super) fn pieces(
     }
 }
 
-/// The finest level on which a line as long as `way` crosses no more than [`MOST_CELLS`] texels.
-fn level(texture: &MipTexture, way: DVec2) -> usize {
-    let fits =
-        |size: [u32; 2]| (way * DVec2::from(size.map(f64::from))).abs().max_element() <= MOST_CELLS;
+/// The finest level on which a line with this offset between its ends crosses no more than [`MOST_CELLS`] texels.
+fn level(texture: &MipTexture, offset: DVec2) -> usize {
+    let fits = |size: [u32; 2]| {
+        (offset * DVec2::from(size.map(f64::from)))
+            .abs()
+            .max_element()
+            <= MOST_CELLS
+    };
     let levels = texture.levels();
     levels
         .iter()
@@ -58,15 +62,15 @@ fn level(texture: &MipTexture, way: DVec2) -> usize {
         .unwrap_or(levels.len() - 1)
 }
 
-/// Cuts the line between two points where either coordinate is whole; shares of its way. A line that crosses absurdly
-/// many cells stays in one piece.
+/// Cuts the line between two points where either coordinate is whole; pieces are shares of its length. A line that crosses
+/// absurdly many cells stays in one piece.
 fn for_each_cell([from, to]: [DVec2; 2], mut visit: impl FnMut([f64; 2])) {
-    let way = to - from;
-    if !way.is_finite() || way.abs().max_element() > 2.0 * MOST_CELLS {
+    let offset = to - from;
+    if !offset.is_finite() || offset.abs().max_element() > 2.0 * MOST_CELLS {
         visit([0.0, 1.0]);
         return;
     }
-    let mut lines = [0, 1].map(|axis| Crossings::new(from[axis], way[axis]));
+    let mut lines = [0, 1].map(|axis| Crossings::new(from[axis], offset[axis]));
     let mut start = 0.0;
     while start < 1.0 {
         let end = lines[0].at().min(lines[1].at()).min(1.0);
@@ -82,21 +86,21 @@ fn for_each_cell([from, to]: [DVec2; 2], mut visit: impl FnMut([f64; 2])) {
     }
 }
 
-/// Where a coordinate that moves evenly is whole.
+/// The shares of a line at which one of its coordinates is whole.
 struct Crossings {
     from: f64,
-    way: f64,
+    offset: f64,
     /// The next whole number.
     whole: f64,
     step: f64,
 }
 
 impl Crossings {
-    fn new(from: f64, way: f64) -> Self {
-        let step = way.signum();
+    fn new(from: f64, offset: f64) -> Self {
+        let step = offset.signum();
         Self {
             from,
-            way,
+            offset,
             whole: if step > 0.0 {
                 from.floor()
             } else {
@@ -106,17 +110,17 @@ impl Crossings {
         }
     }
 
-    /// Share of the way at which the next whole number is reached.
+    /// Share of the line at which the next whole number is reached.
     fn at(&self) -> f64 {
-        if self.way == 0.0 {
+        if self.offset == 0.0 {
             f64::INFINITY
         } else {
-            (self.whole - self.from) / self.way
+            (self.whole - self.from) / self.offset
         }
     }
 }
 
-/// The parts of [0, 1] where the quadratic polynomial with these values at 0, 1/2 and 1 is at least zero.
+/// Calls `emit` with the parts of [0, 1] where the quadratic polynomial with these values at 0, 1/2 and 1 is at least zero.
 fn for_each_positive([at0, at_half, at1]: [f64; 3], mut emit: impl FnMut(f64, f64)) {
     let a = 2.0 * (at0 - 2.0 * at_half + at1);
     let b = -3.0 * at0 + 4.0 * at_half - at1;

@@ -16,7 +16,7 @@ pub(super) struct TriangleRay {
     shear: DVec3,
 }
 
-/// Where a ray meets a triangle.
+/// The point where a ray meets a triangle.
 pub(super) struct Crossing {
     /// Distance along the ray [m].
     pub(super) distance: f64,
@@ -36,7 +36,7 @@ impl TriangleRay {
         }
     }
 
-    /// The crossing with a triangle, at whatever distance; `None` where they miss or the triangle is degenerate.
+    /// The crossing with a triangle, at any distance; `None` if they miss or the triangle is degenerate.
     pub(super) fn meet(&self, corners: &[Vec3; 3]) -> Option<Crossing> {
         let [a, b, c] = corners.map(|p| self.sheared(p));
         let edge = |p: DVec3, q: DVec3| q.x * p.y - q.y * p.x;

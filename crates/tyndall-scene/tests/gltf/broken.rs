@@ -1,4 +1,4 @@
-//! Broken files: an error that says what and where, never a panic.
+//! Broken files: an error that names the problem and its place, never a panic.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -9,7 +9,7 @@ use crate::document::{Document, F32, Folder, U8, U16, floats};
 
 type Damage = fn(&mut Document);
 
-/// What is done to a sound file, and what the message must say.
+/// A change to a sound file, and the text that the message must hold.
 const DAMAGES: &[(&str, Damage, &str)] = &[
     (
         "index out of range",
@@ -164,17 +164,17 @@ const DAMAGES: &[(&str, Damage, &str)] = &[
         "buffer 1: has no `uri`, and there is no GLB chunk",
     ),
     (
-        "picture that is not there",
+        "image that is not there",
         |d| texture(d, json!({"uri": "nowhere.png"})),
         "material 0 `wall`, image 0: cannot read",
     ),
     (
-        "picture that is none",
+        "image that is none",
         |d| texture(d, json!({"uri": "data:image/png;base64,AAAA"})),
         "material 0 `wall`, image 0: cannot be decoded",
     ),
     (
-        "picture without a source",
+        "image without a source",
         |d| texture(d, json!({})),
         "material 0 `wall`, image 0: has neither `uri` nor `bufferView`",
     ),
@@ -332,7 +332,7 @@ fn what_the_scene_does_not_use_may_be_broken() {
         [
             "NaN position",
             "accessor outside its view",
-            "picture that is not there",
+            "image that is not there",
         ]
         .contains(name)
     }) {

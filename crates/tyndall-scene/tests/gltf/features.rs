@@ -1,4 +1,4 @@
-//! What of glTF is read, one hand-made file a feature.
+//! Features of glTF that are read, one hand-made file each.
 
 use crate::document::{Document, F32, Folder, U8, U16, U32, floats};
 use glam::{Affine3A, Quat, Vec2, Vec3, vec2, vec3};
@@ -175,11 +175,9 @@ fn normals_are_normalised_or_made() {
 
 /// A 2 x 1 PNG: red, half-transparent green.
 fn png() -> Vec<u8> {
-    let picture = image::RgbaImage::from_raw(2, 1, vec![255, 0, 0, 255, 0, 255, 0, 128]).unwrap();
+    let image = image::RgbaImage::from_raw(2, 1, vec![255, 0, 0, 255, 0, 255, 0, 128]).unwrap();
     let mut bytes = std::io::Cursor::new(Vec::new());
-    picture
-        .write_to(&mut bytes, image::ImageFormat::Png)
-        .unwrap();
+    image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
     bytes.into_inner()
 }
 
@@ -243,7 +241,7 @@ fn uvs_of_the_texture_in_use_with_its_transform() {
 }
 
 #[test]
-fn pictures_from_files_views_and_data_uris() {
+fn images_from_files_views_and_data_uris() {
     let png = png();
     let percent_encoded: String = png.iter().map(|byte| format!("%{byte:02x}")).collect();
     let sources = [
@@ -270,7 +268,7 @@ fn pictures_from_files_views_and_data_uris() {
 }
 
 #[test]
-fn pictures_that_nothing_uses_may_be_missing() {
+fn images_that_nothing_uses_may_be_missing() {
     let document = Document::with_primitive(3, textured(json!({"index": 0})));
     assert!(document.load().unwrap().textures.is_empty());
 }
@@ -603,7 +601,7 @@ fn animations_move_nodes_and_rest_where_they_have_no_channel() {
             scene.nodes[moved].parent_from_local.translation,
             Vec3::splat(9.0).into()
         );
-        tyndall_scene::animation::pose(&mut scene, 0.5);
+        scene.pose(0.5);
         let place = scene.nodes[moved].parent_from_local;
         let expected = Affine3A::from_scale_rotation_translation(
             Vec3::splat(3.0),

@@ -9,9 +9,9 @@ use std::{
 use serde_json::Value;
 use tyndall_scene::{load::load, scene::Scene};
 
-/// Files that Khronos' validator finds no error in and that are refused all the same, with what is said about them.
+/// Files that Khronos' validator finds no error in and that are refused all the same, with the messages about them.
 const REFUSED: &[(&str, &str)] = &[
-    // The reports are of a validator that lets pass what it doesn't know.
+    // The reports are of a validator that lets unknown things pass.
     (
         "accessor/unknown_type.gltf",
         "`accessors[0].type`: invalid value",

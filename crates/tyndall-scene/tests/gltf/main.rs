@@ -1,4 +1,4 @@
-//! Loading glTF: what is read, what is refused and how, and whatever files there are.
+//! Loading glTF: features that are read, files that are refused and how, and all sample files there are.
 
 // A test says that something is wrong by panicking.
 #![allow(clippy::unwrap_used, clippy::panic)]

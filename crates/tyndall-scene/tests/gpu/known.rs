@@ -1,4 +1,4 @@
-//! Pictures of rectangles, known in closed form.
+//! Images of rectangles, known in closed form.
 
 use glam::{Affine3A, DMat4, DVec3, Vec3};
 use tyndall::{
@@ -56,7 +56,7 @@ const DEPTH_RANGES: [DepthRange; 3] = [
     DepthRange::ReversedInfinite,
 ];
 
-/// At the origin, looking along -Z, 90 degrees each way.
+/// A camera at the origin that looks along -Z, 90 degrees wide and high.
 fn camera(perspective: bool, depth_range: DepthRange) -> Camera {
     let (half_extent, center, near, far) = ([1.0; 2], [0.0; 2], 0.5, 50.0);
     Camera {
@@ -82,10 +82,10 @@ fn camera(perspective: bool, depth_range: DepthRange) -> Camera {
     }
 }
 
-/// The texel at (x, y) of a picture of `N` channels.
-fn texel<const N: usize>(picture: &[f32], size: u32, x: u32, y: u32) -> [f32; N] {
+/// The texel at (x, y) of an image of `N` channels.
+fn texel<const N: usize>(image: &[f32], size: u32, x: u32, y: u32) -> [f32; N] {
     let start = (y * size + x) as usize * N;
-    picture[start..start + N].try_into().unwrap()
+    image[start..start + N].try_into().unwrap()
 }
 
 #[test]
@@ -192,8 +192,8 @@ fn masked_surfaces_have_holes() {
         })
         .rectangle(corner, edges, masked)
         .build();
-    let expect = |picture: &[f32]| {
-        for (i, &depth) in picture.iter().enumerate() {
+    let expect = |image: &[f32]| {
+        for (i, &depth) in image.iter().enumerate() {
             let hole = i % 8 < 4 && i / 8 < 4;
             assert_eq!(depth == 0.0, hole, "pixel {i}: {depth}");
         }
@@ -290,7 +290,7 @@ fn cube_faces_are_webgpus() {
     }
 }
 
-/// Six panes and a wall among them: the four nearest to the light before the wall, in order, whatever order they are drawn in.
+/// Six panes and a wall among them: the four nearest to the light before the wall, in order, in any order of drawing.
 #[test]
 fn glass_is_peeled_from_the_light_on() {
     let Some(gpu) = device_or_skip("glass layers") else {
@@ -411,7 +411,7 @@ fn clear_glass_is_no_glass() {
             true,
         ),
         (
-            "red picture",
+            "red texture",
             textured(material(
                 white,
                 Blocking::Transmissive { transmission: 1.0 },
@@ -420,19 +420,19 @@ fn clear_glass_is_no_glass() {
             true,
         ),
         (
-            "white picture",
+            "white texture",
             textured(material(white, Blocking::Blended)),
             [255; 4],
             false,
         ),
         (
-            "red blended picture",
+            "red blended texture",
             textured(material(white, Blocking::Blended)),
             [255, 0, 0, 255],
             true,
         ),
         (
-            "invisible picture",
+            "invisible texture",
             textured(material(white, Blocking::Blended)),
             [255, 0, 0, 0],
             false,
@@ -448,8 +448,8 @@ fn clear_glass_is_no_glass() {
 
 /// All 256 codes, one a pixel.
 #[test]
-fn pictures_are_decoded_to_linear() {
-    let Some(gpu) = device_or_skip("decoding of pictures") else {
+fn textures_are_decoded_to_linear() {
+    let Some(gpu) = device_or_skip("decoding of textures") else {
         return;
     };
     let (corner, edges) = wall(4.0, -4.0);

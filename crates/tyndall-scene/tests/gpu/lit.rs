@@ -20,14 +20,14 @@ use crate::{
     support::{channels, color_target, read, record, rel_mae, renderer},
 };
 
-/// The same scene under every kind of light, lit on both sides from the same maps but for rasterisation.
+/// Lights one scene with every kind of light, on both sides from the same maps but for rasterisation.
 #[test]
 fn lit_surfaces_are_the_cpus() {
     let Some(gpu) = device_or_skip("lit surfaces against the CPU's") else {
         return;
     };
     let mut scene = clutter(200);
-    // What glows of itself would outshine the differences.
+    // Emission would outshine the differences.
     for material in &mut scene.materials {
         material.emissive = [0.0; 3];
     }
@@ -44,7 +44,7 @@ fn lit_surfaces_are_the_cpus() {
         record(gpu, |encoder| {
             renderer.g_buffer(encoder, &g_buffer, &camera, None)
         });
-        // Of the same G-buffer: this is about lighting alone.
+        // Both sides share a G-buffer: this is about lighting alone.
         let cpu_g_buffer = read_g_buffer(gpu, &g_buffer);
         for (name, light, maps) in &lights {
             let frame = frame(camera, *light);
@@ -68,10 +68,10 @@ fn lit_surfaces_are_the_cpus() {
     }
 }
 
-/// Direct light is multiplied by the picture of visibility, ambient light is not.
+/// Direct light is multiplied by the visibility texture, ambient light is not.
 #[test]
 fn visibility_scales_direct_light() {
-    let Some(gpu) = device_or_skip("surfaces lit through a picture of visibility") else {
+    let Some(gpu) = device_or_skip("surfaces lit through a visibility texture") else {
         return;
     };
     let mut scene = clutter(200);
@@ -146,7 +146,7 @@ fn read_g_buffer(gpu: &TestDevice, targets: &GBufferTargets) -> GBuffer {
     }
 }
 
-/// A light's pictures on both sides; the shadow map is the GPU's, so that edges don't differ.
+/// A light's maps on both sides; the shadow map is the GPU's, so that edges don't differ.
 struct LightMaps {
     shadow: Option<(ShadowMapTarget, ShadowMap)>,
     glass: Option<(GlassMapTarget, GlassMap)>,
@@ -224,7 +224,7 @@ fn shaded_lights() -> Vec<(&'static str, Light)> {
         radiance: [3.0, 2.0, 1.0],
         samples: 64,
     };
-    let picture = |emitter: &Emitter| match emitter {
+    let texture = |emitter: &Emitter| match emitter {
         Emitter::Directional { .. } => TexturePlacement::Parallelogram {
             center: [0.0; 3],
             edge_x: [6.0, 0.0, 1.0],
@@ -244,7 +244,7 @@ fn shaded_lights() -> Vec<(&'static str, Light)> {
         (
             "textured rect",
             Light {
-                texture: Some(picture(&rect)),
+                texture: Some(texture(&rect)),
                 ..plain(rect)
             },
         ),
@@ -262,7 +262,7 @@ fn shaded_lights() -> Vec<(&'static str, Light)> {
         lights.push((
             "textured",
             Light {
-                texture: Some(picture(&emitter)),
+                texture: Some(texture(&emitter)),
                 ..shadowed
             },
         ));

@@ -12,7 +12,7 @@ pub(crate) struct Builder {
 }
 
 impl Builder {
-    /// Adds a rectangle from a corner along two edges, the picture's left-to-right and top-to-bottom.
+    /// Adds a rectangle from a corner along two edges, the texture's left-to-right and top-to-bottom.
     pub(crate) fn rectangle(mut self, corner: Vec3, edges: [Vec3; 2], material: Material) -> Self {
         let uvs = [
             vec2(0.0, 0.0),
@@ -38,7 +38,7 @@ impl Builder {
         self
     }
 
-    /// Adds a picture; the next material may refer to it by this index: 0, 1, ...
+    /// Adds a texture; the next material may refer to it by this index: 0, 1, ...
     pub(crate) fn texture(mut self, size: [u32; 2], texel: impl Fn(u32, u32) -> [u8; 4]) -> Self {
         let rows = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
         self.scene.textures.push(Texture {

@@ -1,4 +1,4 @@
-//! What the tests have in common.
+//! Common parts of the tests.
 
 use tyndall_scene::{
     gpu::{SceneRenderer, readback},
@@ -59,14 +59,12 @@ pub(crate) fn differing(found: &[f32], expected: &[f32], tolerance: f32) -> (f64
 
 /// Relative mean absolute error of linear RGB.
 pub(crate) fn rel_mae(found: &[f32], expected: &[f32], size: [u32; 2]) -> f64 {
-    let picture = |values: &[f32]| {
+    let image = |values: &[f32]| {
         let (pixels, _) = values.as_chunks::<3>();
         let pixels = pixels.iter().map(|pixel| pixel.map(f64::from)).collect();
         Picture::new(size.map(|n| n as usize), pixels).unwrap()
     };
-    compare(&picture(found), &picture(expected))
-        .unwrap()
-        .rel_mae
+    compare(&image(found), &image(expected)).unwrap().rel_mae
 }
 
 #[test]

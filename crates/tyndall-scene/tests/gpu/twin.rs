@@ -1,4 +1,4 @@
-//! Rasterised pictures against the tracer's.
+//! Rasterised images against the tracer's.
 
 use tyndall::frame::ShadowProjection;
 use tyndall_scene::{

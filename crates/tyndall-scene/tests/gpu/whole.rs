@@ -80,7 +80,7 @@ fn rasterised(gpu: &TestDevice, renderer: &SceneRenderer, frame: &Frame) -> [Vec
     ]
 }
 
-/// The same, traced on the CPU.
+/// The image traced on the CPU.
 fn traced(tracer: &Tracer, frame: &Frame) -> [Vec<f32>; 2] {
     let quiet = |_, _| ();
     let light = frame.lights[0];
@@ -97,11 +97,11 @@ fn traced(tracer: &Tracer, frame: &Frame) -> [Vec<f32>; 2] {
         texture: None,
     };
     let g_buffer = tracer.g_buffer(&frame.camera, SIZE, &quiet);
-    let picture = shade(&g_buffer, frame, &[inputs], None);
-    [picture.concat(), g_buffer.depth]
+    let image = shade(&g_buffer, frame, &[inputs], None);
+    [image.concat(), g_buffer.depth]
 }
 
-/// Checks that the pictures' relMAE is below `bound`.
+/// Checks that the images' relMAE is below `bound`.
 fn check(gpu: &TestDevice, name: &str, scene: &Scene, bound: f64) {
     let tracer = Tracer::new(scene);
     let framing = frame_scene(scene, &tracer, SIZE[0] as f32 / SIZE[1] as f32);

@@ -32,7 +32,7 @@ impl Effect {
         }
         let shared = Shared::new(device, options.output.format());
         Ok(Self {
-            composite: Composite::new(device, &shared.frame_layout, format),
+            composite: Composite::new(device, &shared, format),
             shared,
         })
     }

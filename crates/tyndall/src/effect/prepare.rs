@@ -7,7 +7,7 @@ use crate::{
     frame::{Emitter, Frame, Light},
     gpu::{
         pass::LightPasses,
-        scope::LightScope,
+        scope::{LightScope, Shared},
         uniforms::{FrameUniform, LightUniform},
     },
     inputs::{FrameInputs, LightInputs},
@@ -41,13 +41,22 @@ fn black<'a>(techniques: &TechniqueChoice) -> PlannedLight<'a> {
 }
 
 /// What the passes of a frame's lights share.
-struct Shared<'a> {
+struct FrameParts<'a> {
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
     frame: &'a Frame,
     rays: CameraRays,
     depth: &'a wgpu::TextureView,
     uniform: wgpu::Buffer,
+    airlight: wgpu::TextureView,
+}
+
+impl FrameParts<'_> {
+    /// Bind group 0 with these lights before.
+    fn group(&self, effect: &Shared, lights_before: &wgpu::TextureView) -> wgpu::BindGroup {
+        let (uniform, depth, airlight) = (&self.uniform, self.depth, &self.airlight);
+        effect.frame_group(self.device, uniform, depth, airlight, lights_before)
+    }
 }
 
 impl Effect {
@@ -66,23 +75,27 @@ impl Effect {
         techniques: &TechniqueChoice,
     ) -> Result<(), PrepareError> {
         let lights = plan(device, view, inputs, frame, techniques)?;
-        let shared = begin(device, queue, view, inputs, frame, lights.len());
+        let parts = begin(
+            &self.shared,
+            device,
+            queue,
+            view,
+            inputs,
+            frame,
+            lights.len(),
+        );
         let mut before = self.shared.absent.light.clone();
         for (index, light) in lights.iter().enumerate() {
             // The sum of the lights goes to and fro between two textures; the second is made with the second light.
             let sum = self.sum(device, &mut view.pool, view.size, index % 2);
-            let passes = self.passes(&shared, view, (index, light), &before, sum.clone())?;
+            let passes = self.passes(&parts, view, (index, light), &before, sum.clone())?;
             view.passes.extend(passes.before);
             view.passes.push(passes.last);
             view.visibilities.push(passes.visibility);
             before = sum;
         }
         view.pool.end();
-        let depth = shared.depth;
-        view.composite = Some(
-            self.shared
-                .frame_group(device, &shared.uniform, depth, &before),
-        );
+        view.composite = Some(parts.group(&self.shared, &before));
         view.output = before;
         Ok(())
     }
@@ -90,32 +103,28 @@ impl Effect {
     /// The passes of one light; the last of them adds it to the lights `before` and writes the `sum`.
     fn passes(
         &self,
-        shared: &Shared<'_>,
+        parts: &FrameParts<'_>,
         view: &mut EffectView,
         (index, planned): (usize, &PlannedLight<'_>),
         before: &wgpu::TextureView,
         sum: wgpu::TextureView,
     ) -> Result<LightPasses, PrepareError> {
-        let Shared {
+        let FrameParts {
             device,
             queue,
             frame,
             ..
-        } = *shared;
+        } = *parts;
         let PlannedLight {
             light,
             inputs,
             technique,
         } = planned;
         let method = technique.gpu()?;
-        let (uniform, variant) = LightUniform::new(light, shared.rays.eye, inputs.glass.is_some());
+        let (uniform, variant) = LightUniform::new(light, parts.rays.eye, inputs.glass.is_some());
         let key = (Some(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);
-        let group = |lights_before| {
-            let shared_frame = &shared.uniform;
-            self.shared
-                .frame_group(device, shared_frame, shared.depth, lights_before)
-        };
+        let group = |lights_before| parts.group(&self.shared, lights_before);
         let light_group = self.shared.light_group(device, &uniform, inputs);
         let mut scope = LightScope {
             device,
@@ -123,7 +132,7 @@ impl Effect {
             shared: &self.shared,
             pool: &mut view.pool,
             frame,
-            rays: &shared.rays,
+            rays: &parts.rays,
             size: view.size,
             index,
             light,
@@ -190,13 +199,14 @@ fn plan<'a>(
 
 /// Begins a frame of so many lights: what all of them read is uploaded.
 fn begin<'a>(
+    effect: &Shared,
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
     view: &mut EffectView,
     inputs: &FrameInputs<'a>,
     frame: &'a Frame,
     lights: usize,
-) -> Shared<'a> {
+) -> FrameParts<'a> {
     let rays = CameraRays::new(&frame.camera, view.size);
     let uniform = FrameUniform::new(frame, &rays, view.size);
     let seen_from = Viewpoint {
@@ -210,12 +220,14 @@ fn begin<'a>(
     view.counts.clear();
     view.visibilities.clear();
     let uniform = view.pool.uniform(device, queue, (None, "frame"), &uniform);
-    Shared {
+    let airlight = effect.airlight(device, queue, frame);
+    FrameParts {
         device,
         queue,
         frame,
         rays,
         depth: inputs.depth,
         uniform,
+        airlight,
     }
 }

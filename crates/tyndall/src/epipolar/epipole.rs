@@ -112,10 +112,7 @@ fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        frame::Camera,
-        gpu::shader::{CHOICE_ALONE, SCREEN},
-    };
+    use crate::frame::Camera;
     use glam::DVec2;
     use tyndall_testkit::{device::device_or_skip, samples::in_box, wgsl};
 
@@ -243,6 +240,8 @@ mod tests {
                 .collect();
             let evaluate = |expression: &str| {
                 let prelude = "
+import tyndall::passes::epipolar::screen::{
+    ScreenLine, screen_border, screen_line, screen_sample, screen_slice_border, screen_slices};
                     fn test_line(x: array<f32, 7>) -> ScreenLine {
                         let epipole = vec3f(x[0], x[1], x[2]);
                         let border = screen_border(vec2f(320.0, 200.0), epipole, vec2f(x[3], x[4]));
@@ -259,8 +258,8 @@ mod tests {
                     fn test_exit(x: array<f32, 7>, slice: f32) -> f32 {
                         return screen_slice_border(vec2f(x[5], x[6]), 100u, u32(slice));
                     }";
-                wgsl::evaluate(gpu, &[CHOICE_ALONE, SCREEN, prelude], expression, &inputs)
-                    .expect("it runs")
+                let prelude = crate::shader::tests::harness(prelude, &[], &[]);
+                wgsl::evaluate(gpu, &[&prelude], expression, &inputs).expect("it runs")
             };
             let lines = evaluate("test_line(x).entry, test_line(x).step");
             let sample = evaluate("test_sample(x)");

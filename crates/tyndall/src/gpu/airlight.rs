@@ -12,11 +12,11 @@ const KEPT: usize = 8;
 
 /// The tables of the media of late, as textures that `airlight.wgsl` reads.
 #[derive(Default)]
-pub(crate) struct AirlightPictures {
+pub(crate) struct AirlightTextures {
     kept: Mutex<Vec<(Vec<Phase>, wgpu::TextureView)>>,
 }
 
-impl AirlightPictures {
+impl AirlightTextures {
     /// One layer a component of the medium, in order; a vacuum has one that nothing reads.
     pub(crate) fn of(
         &self,

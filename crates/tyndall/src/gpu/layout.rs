@@ -1,132 +1,41 @@
-//! Bind group layouts that all passes share, and the pictures that stand in for inputs a light does not have.
+//! Bind group layouts that all passes share, and the textures that stand in for inputs a light does not have.
 
-use std::num::NonZeroU64;
+use crate::shader::Reflection;
 
-use super::uniforms::{FrameUniform, LightUniform};
-
-/// A uniform block of this type at `binding`, for all stages.
-pub(crate) fn uniform<T>(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    entry(
-        binding,
-        wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: NonZeroU64::new(size_of::<T>() as u64),
-        },
-    )
-}
-
-/// A storage buffer at `binding`; vertices only ever read one.
-pub(crate) fn storage(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEntry {
-    let buffer = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Storage { read_only },
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    if read_only {
-        return entry(binding, buffer);
-    }
-    writable(binding, buffer)
-}
-
-/// What vertices may not see without a feature of their own.
-fn writable(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
-    let mut entry = entry(binding, ty);
-    entry.visibility.remove(wgpu::ShaderStages::VERTEX);
-    entry
-}
-
-/// A 2-D texture that a compute shader writes, at `binding`.
-pub(crate) fn storage_texture(
-    binding: u32,
-    format: wgpu::TextureFormat,
-) -> wgpu::BindGroupLayoutEntry {
-    let ty = wgpu::BindingType::StorageTexture {
-        access: wgpu::StorageTextureAccess::WriteOnly,
-        format,
-        view_dimension: wgpu::TextureViewDimension::D2,
-    };
-    writable(binding, ty)
-}
-
-/// A 2-D texture of floats at `binding` that is read texel by texel.
-pub(crate) fn texels(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    let texels = wgpu::TextureSampleType::Float { filterable: false };
-    texture(binding, texels, wgpu::TextureViewDimension::D2)
-}
-
-/// An array of 2-D textures of floats at `binding` that is read texel by texel.
-pub(crate) fn texel_layers(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    let texels = wgpu::TextureSampleType::Float { filterable: false };
-    texture(binding, texels, wgpu::TextureViewDimension::D2Array)
-}
-
-/// The airlight tables ([`AirlightPictures`](super::airlight::AirlightPictures)) at `binding`.
-pub(crate) fn airlight(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    texel_layers(binding)
-}
-
-fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
-        ty,
-        count: None,
-    }
-}
-
-fn texture(
-    binding: u32,
-    sample_type: wgpu::TextureSampleType,
-    view_dimension: wgpu::TextureViewDimension,
-) -> wgpu::BindGroupLayoutEntry {
-    entry(
-        binding,
-        wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension,
-            multisampled: false,
-        },
-    )
-}
-
-/// Bind group 0: the frame's uniforms, the depth buffer, the in-scattered light so far.
+/// Bind group 0: the frame's uniforms, the depth buffer, the in-scattered light so far, airlight tables.
 pub(crate) fn frame(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    use wgpu::{TextureSampleType as Sample, TextureViewDimension as Dimension};
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("tyndall frame"),
-        entries: &[
-            uniform::<FrameUniform>(0),
-            texture(1, Sample::Depth, Dimension::D2),
-            texture(2, Sample::Float { filterable: false }, Dimension::D2),
-        ],
-    })
+    declared(device, "tyndall frame", "tyndall::gpu::frame", 0)
 }
 
-/// Bind group 1: a light's uniforms, shadow map, glass and picture.
+/// Bind group 1: a light's uniforms, shadow map, glass, texture and sampler.
 pub(crate) fn light(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    use wgpu::{TextureSampleType as Sample, TextureViewDimension as Dimension};
+    declared(device, "tyndall light", "tyndall::shadow::shadow", 1)
+}
+
+/// All that a module of the package and those it imports declare of a group.
+///
+/// # Panics
+/// Where the module is no valid shader: tests link all of them.
+fn declared(
+    device: &wgpu::Device,
+    label: &'static str,
+    module: &str,
+    group: u32,
+) -> wgpu::BindGroupLayout {
+    let reflection = Reflection::new(module).expect("a valid shader of the package");
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("tyndall light"),
-        entries: &[
-            uniform::<LightUniform>(0),
-            texture(1, Sample::Depth, Dimension::D2Array),
-            texture(2, Sample::Uint, Dimension::D2Array),
-            texture(3, Sample::Float { filterable: true }, Dimension::D2),
-            entry(
-                4,
-                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            ),
-        ],
+        label: Some(label),
+        entries: &reflection.bindings_declared(group),
     })
 }
 
-/// What is bound where a light has no such picture.
+/// Textures that are bound where a light has none of its own.
 pub(crate) struct Absent {
     pub(crate) shadow_map: wgpu::TextureView,
     pub(crate) glass: wgpu::TextureView,
-    pub(crate) picture: wgpu::TextureView,
+    pub(crate) texture: wgpu::TextureView,
     pub(crate) light: wgpu::TextureView,
+    pub(crate) airlight: wgpu::TextureView,
 }
 
 impl Absent {
@@ -151,8 +60,9 @@ impl Absent {
         Self {
             shadow_map: texel(Format::Depth32Float, Dimension::D2Array),
             glass: texel(Format::Rg32Uint, Dimension::D2Array),
-            picture: texel(Format::Rgba8Unorm, Dimension::D2),
+            texture: texel(Format::Rgba8Unorm, Dimension::D2),
             light: texel(Format::Rgba16Float, Dimension::D2),
+            airlight: texel(Format::Rg32Float, Dimension::D2Array),
         }
     }
 }

@@ -2,14 +2,10 @@
 
 use std::{
     collections::HashMap,
-    sync::{Mutex, PoisonError},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use super::{
-    scope::Shared,
-    shader::{self, FRAME_MODULES, LIGHT_MODULES},
-    uniforms::LightVariant,
-};
+use super::{scope::Shared, shader::Shader, uniforms::LightVariant};
 
 /// What a stencil is kept in.
 pub(crate) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
@@ -86,7 +82,6 @@ impl Raster {
     pub(crate) fn pipeline(
         &self,
         device: &wgpu::Device,
-        label: &str,
         module: &wgpu::ShaderModule,
         entry_point: &str,
         layout: &wgpu::PipelineLayout,
@@ -98,7 +93,7 @@ impl Raster {
             ..Default::default()
         };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(label),
+            label: Some(entry_point),
             layout: Some(layout),
             vertex: wgpu::VertexState {
                 module,
@@ -130,11 +125,9 @@ impl Raster {
 
 /// A shader over bind groups 0 (frame), 1 (light) and 2 (its own).
 pub(crate) struct Recipe {
-    label: &'static str,
     entry_point: &'static str,
-    module: wgpu::ShaderModule,
-    layout: wgpu::PipelineLayout,
-    own: wgpu::BindGroupLayout,
+    shader: Arc<Shader>,
+    shared: [wgpu::BindGroupLayout; 2],
     /// How a render pass draws.
     raster: Raster,
     /// Whether lights of different kinds need pipelines of their own.
@@ -143,11 +136,42 @@ pub(crate) struct Recipe {
     constants: Vec<(&'static str, f64)>,
 }
 
+/// What the entry points of a recipe bind themselves.
+struct Own {
+    /// Binding numbers of group 2, in order.
+    bindings: Vec<u32>,
+    group: wgpu::BindGroupLayout,
+    pipeline: wgpu::PipelineLayout,
+}
+
+impl Recipe {
+    fn own(&self, device: &wgpu::Device) -> Own {
+        let entry_points = [self.entry_point, self.raster.vertex];
+        let entries = self.shader.reflection.bindings_of(2, &entry_points);
+        let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(self.entry_point),
+            entries: &entries,
+        });
+        let [frame, light] = &self.shared;
+        let pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.entry_point),
+            bind_group_layouts: &[Some(frame), Some(light), Some(&group)],
+            immediate_size: 0,
+        });
+        Own {
+            bindings: entries.iter().map(|entry| entry.binding).collect(),
+            group,
+            pipeline,
+        }
+    }
+}
+
 /// A kind of pipeline.
 pub(crate) trait Pipeline: Clone {
     fn make(
         device: &wgpu::Device,
         recipe: &Recipe,
+        layout: &wgpu::PipelineLayout,
         constants: &[(&str, f64)],
         stencil: Stencil,
     ) -> Self;
@@ -157,13 +181,14 @@ impl Pipeline for wgpu::ComputePipeline {
     fn make(
         device: &wgpu::Device,
         recipe: &Recipe,
+        layout: &wgpu::PipelineLayout,
         constants: &[(&str, f64)],
         _stencil: Stencil,
     ) -> Self {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(recipe.label),
-            layout: Some(&recipe.layout),
-            module: &recipe.module,
+            label: Some(recipe.entry_point),
+            layout: Some(layout),
+            module: &recipe.shader.module,
             entry_point: Some(recipe.entry_point),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants,
@@ -178,6 +203,7 @@ impl Pipeline for wgpu::RenderPipeline {
     fn make(
         device: &wgpu::Device,
         recipe: &Recipe,
+        layout: &wgpu::PipelineLayout,
         constants: &[(&str, f64)],
         stencil: Stencil,
     ) -> Self {
@@ -187,62 +213,46 @@ impl Pipeline for wgpu::RenderPipeline {
         };
         raster.pipeline(
             device,
-            recipe.label,
-            &recipe.module,
+            &recipe.shader.module,
             recipe.entry_point,
-            &recipe.layout,
+            layout,
             constants,
         )
     }
 }
 
-/// A shader and the pipelines made of it.
+/// A shader's entry point and the pipelines made of it.
 pub(crate) struct Program<P> {
     recipe: Recipe,
+    own: OnceLock<Own>,
     made: Mutex<HashMap<(LightVariant, Stencil), P>>,
 }
 
 /// A program of dispatches.
 pub(crate) type ComputeProgram = Program<wgpu::ComputePipeline>;
-/// A program that draws a picture.
+/// A program that draws.
 pub(crate) type ScreenProgram = Program<wgpu::RenderPipeline>;
 
 impl<P: Pipeline> Program<P> {
-    /// `wgsl` is what stands behind the modules of frame and light; `own` lays out bind group 2; a full-screen program
-    /// writes the effect's output.
+    /// The entry point of a module of the package, by its path without the package's name. A full-screen program writes
+    /// the effect's output.
     pub(crate) fn new(
         device: &wgpu::Device,
         shared: &Shared,
-        label: &'static str,
-        wgsl: &[&str],
+        module: &'static str,
         entry_point: &'static str,
-        own: &[wgpu::BindGroupLayoutEntry],
     ) -> Self {
-        let own = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(label),
-            entries: own,
-        });
-        let groups = [
-            Some(&shared.frame_layout),
-            Some(&shared.light_layout),
-            Some(&own),
-        ];
         let recipe = Recipe {
-            label,
             entry_point,
-            module: shader::create(device, label, &[FRAME_MODULES, LIGHT_MODULES, wgsl]),
-            layout: device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(label),
-                bind_group_layouts: &groups,
-                immediate_size: 0,
-            }),
-            own,
+            shader: shared.shaders.get(device, module),
+            shared: [shared.frame_layout.clone(), shared.light_layout.clone()],
             raster: Raster::full_screen(shared.output.into()),
             reads_light: true,
             constants: Vec::new(),
         };
         Self {
             recipe,
+            own: OnceLock::new(),
             made: Mutex::default(),
         }
     }
@@ -271,21 +281,43 @@ impl<P: Pipeline> Program<P> {
         self
     }
 
-    /// Bind group 2 of these resources, at bindings 0, 1 and so on.
+    /// Bind group 2 of these resources, in the order of their bindings from 0 on. Those that the entry point does not read
+    /// are left out.
     pub(crate) fn bind(
         &self,
         device: &wgpu::Device,
         resources: &[wgpu::BindingResource<'_>],
     ) -> wgpu::BindGroup {
-        let entries: Vec<_> = (0..)
-            .zip(resources.iter().cloned())
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
+        let own = self.own(device);
+        let entry = |binding: &u32| {
+            let resource = resources.get(*binding as usize)?.clone();
+            let binding = *binding;
+            Some(wgpu::BindGroupEntry { binding, resource })
+        };
+        let entries: Vec<_> = own.bindings.iter().filter_map(entry).collect();
         device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.recipe.label),
-            layout: &self.recipe.own,
+            label: Some(self.recipe.entry_point),
+            layout: &own.group,
             entries: &entries,
         })
+    }
+
+    fn own(&self, device: &wgpu::Device) -> &Own {
+        self.own.get_or_init(|| self.recipe.own(device))
+    }
+
+    /// Workgroups that take so many invocations in x, y and z.
+    ///
+    /// # Panics
+    /// Where the entry point is of no compute shader.
+    pub(crate) fn workgroups(&self, invocations: [u32; 3]) -> [u32; 3] {
+        let size = self
+            .recipe
+            .shader
+            .reflection
+            .workgroup_size(self.recipe.entry_point);
+        let size = size.expect("a compute shader");
+        std::array::from_fn(|axis| invocations[axis].div_ceil(size[axis]))
     }
 
     /// The pipeline for this kind of light.
@@ -309,7 +341,9 @@ impl<P: Pipeline> Program<P> {
         let make = || {
             let mut constants = variant.constants().to_vec();
             constants.extend(&self.recipe.constants);
-            P::make(device, &self.recipe, &constants, stencil)
+            constants.retain(|(name, _)| self.recipe.shader.reflection.has_override(name));
+            let layout = &self.own(device).pipeline;
+            P::make(device, &self.recipe, layout, &constants, stencil)
         };
         made.entry((variant, stencil)).or_insert_with(make).clone()
     }

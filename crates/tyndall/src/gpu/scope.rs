@@ -3,17 +3,18 @@
 use std::sync::Arc;
 
 use super::{
-    airlight::AirlightPictures,
+    airlight::AirlightTextures,
     cache::{ProgramCache, Programs},
     layout::{self, Absent},
     pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
     pool::Pool,
     program::{ComputeProgram, ScreenProgram, Stencil},
+    shader::Shaders,
     uniforms::LightVariant,
 };
 use crate::{
     camera::CameraRays,
-    frame::{Frame, Light},
+    frame::{Frame, Light, LightKind},
     inputs::{Count, CountValue, LightInputs, SurfaceShadows},
 };
 
@@ -26,7 +27,8 @@ pub(crate) struct Shared {
     pub(crate) sampler: wgpu::Sampler,
     /// Format of the in-scattered light.
     pub(crate) output: wgpu::TextureFormat,
-    airlight: AirlightPictures,
+    pub(crate) shaders: Shaders,
+    airlight: AirlightTextures,
     programs: ProgramCache,
 }
 
@@ -43,7 +45,8 @@ impl Shared {
                 ..Default::default()
             }),
             output,
-            airlight: AirlightPictures::default(),
+            shaders: Shaders::default(),
+            airlight: AirlightTextures::default(),
             programs: ProgramCache::default(),
         }
     }
@@ -54,6 +57,7 @@ impl Shared {
         device: &wgpu::Device,
         uniform: &wgpu::Buffer,
         depth: &wgpu::TextureView,
+        airlight: &wgpu::TextureView,
         lights_before: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
         device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -63,6 +67,7 @@ impl Shared {
                 buffer_entry(0, uniform),
                 texture_entry(1, depth),
                 texture_entry(2, lights_before),
+                texture_entry(3, airlight),
             ],
         })
     }
@@ -82,13 +87,28 @@ impl Shared {
                 buffer_entry(0, uniform),
                 texture_entry(1, inputs.shadow_map.unwrap_or(&absent.shadow_map)),
                 texture_entry(2, inputs.glass.unwrap_or(&absent.glass)),
-                texture_entry(3, inputs.texture.unwrap_or(&absent.picture)),
+                texture_entry(3, inputs.texture.unwrap_or(&absent.texture)),
                 wgpu::BindGroupEntry {
                     binding: 4,
                     resource: wgpu::BindingResource::Sampler(&self.sampler),
                 },
             ],
         })
+    }
+
+    /// The airlight tables of the frame's medium, one layer a component; only point and spot lights read them.
+    pub(crate) fn airlight(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        frame: &Frame,
+    ) -> wgpu::TextureView {
+        let is_read = |light: &Light| matches!(light.kind(), LightKind::Point | LightKind::Spot);
+        if frame.lights.iter().any(is_read) {
+            self.airlight.of(device, queue, &frame.medium)
+        } else {
+            self.absent.airlight.clone()
+        }
     }
 
     /// The effect's programs of this type.
@@ -161,12 +181,6 @@ impl LightScope<'_> {
     /// The effect's programs of this type.
     pub(crate) fn programs<P: Programs>(&self) -> Arc<P> {
         self.shared.programs(self.device)
-    }
-
-    /// The airlight tables of the frame's medium, one layer a component.
-    pub(crate) fn airlight(&self) -> wgpu::TextureView {
-        let pictures = &self.shared.airlight;
-        pictures.of(self.device, self.queue, &self.frame.medium)
     }
 
     /// A uniform buffer of this light that holds `value`.

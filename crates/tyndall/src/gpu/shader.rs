@@ -1,56 +1,38 @@
-//! WGSL: plain files of one topic each, joined by the lists below. No preprocessor.
+//! Shaders of the package on a device, each made once an effect.
 
-/// Phase functions.
-pub(crate) const PHASE: &str = include_str!("../physics/phase.wgsl");
-/// Extinction.
-pub(crate) const TRANSMITTANCE: &str = include_str!("../physics/transmittance.wgsl");
-/// Airlight of point lights; needs `CHOICE` and a texture `airlight_table`.
-pub(crate) const AIRLIGHT: &str = include_str!("../physics/airlight.wgsl");
-/// Media; needs `FRAME`.
-pub(crate) const MEDIUM: &str = include_str!("../physics/medium.wgsl");
-/// View rays; needs `FRAME`.
-pub(crate) const CAMERA: &str = include_str!("../camera/camera.wgsl");
-/// Bind group 0.
-pub(crate) const FRAME: &str = include_str!("frame.wgsl");
-/// Uniforms that decide branches; needs `FRAME`.
-pub(crate) const CHOICE: &str = include_str!("choice.wgsl");
-/// The same in shaders that tests run without a depth buffer.
-#[cfg(test)]
-pub(crate) const CHOICE_ALONE: &str = "fn frame_choice(value: u32) -> u32 { return value; }";
-/// Spot cones.
-pub(crate) const CONE: &str = include_str!("../light/cone.wgsl");
-/// Bind group 1: lights.
-pub(crate) const LIGHT: &str = include_str!("../light/light.wgsl");
-/// Lit stretches of view rays; needs `AIRLIGHT` and its texture.
-pub(crate) const STRETCH: &str = include_str!("../light/stretch.wgsl");
-/// Bind group 1: shadow maps.
-pub(crate) const SHADOW: &str = include_str!("../shadow/shadow.wgsl");
-/// Steps along view rays; needs frame and light.
-pub(crate) const MARCH: &str = include_str!("../shadow/march.wgsl");
+use std::{
+    collections::HashMap,
+    sync::{Arc, Mutex, PoisonError},
+};
 
-/// Epipolar lines on the picture; needs `CHOICE`.
-pub(crate) const SCREEN: &str = include_str!("../passes/epipolar/screen.wgsl");
-/// Slices in their shadow map; needs `SCREEN`, frame and light.
-pub(crate) const TRACE: &str = include_str!("../passes/epipolar/trace.wgsl");
+use crate::shader::Reflection;
 
-/// What a pass needs that reads the camera, the medium and the depth buffer.
-pub(crate) const FRAME_MODULES: &[&str] = &[PHASE, TRANSMITTANCE, MEDIUM, CAMERA, FRAME, CHOICE];
-/// What a pass needs besides that reads a light and its shadow map.
-pub(crate) const LIGHT_MODULES: &[&str] = &[CONE, LIGHT, SHADOW];
-
-/// The text of a shader made of these modules.
-pub(crate) fn join(modules: &[&[&str]]) -> String {
-    modules.concat().join("\n")
+/// A shader on the device, and what it says of itself.
+pub(crate) struct Shader {
+    pub(crate) module: wgpu::ShaderModule,
+    pub(crate) reflection: Reflection,
 }
 
-/// A shader made of these modules.
-pub(crate) fn create(
-    device: &wgpu::Device,
-    label: &str,
-    modules: &[&[&str]],
-) -> wgpu::ShaderModule {
-    device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(label),
-        source: wgpu::ShaderSource::Wgsl(join(modules).into()),
-    })
+/// The shaders of an effect by the path of their module in the package, without the package's name.
+#[derive(Default)]
+pub(crate) struct Shaders(Mutex<HashMap<&'static str, Arc<Shader>>>);
+
+impl Shaders {
+    /// The shader of this path.
+    ///
+    /// # Panics
+    /// Where the package has no such module, or it is no valid shader: tests link all of them.
+    pub(crate) fn get(&self, device: &wgpu::Device, path: &'static str) -> Arc<Shader> {
+        let mut made = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let make = || {
+            let reflection = Reflection::new(&format!("tyndall::{path}"));
+            let reflection = reflection.expect("a valid shader of the package");
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(path),
+                source: wgpu::ShaderSource::Wgsl((&*reflection.linked.wgsl).into()),
+            });
+            Arc::new(Shader { module, reflection })
+        };
+        Arc::clone(made.entry(path).or_insert_with(make))
+    }
 }

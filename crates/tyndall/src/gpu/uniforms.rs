@@ -1,6 +1,6 @@
 //! The uniform blocks, byte for byte as their WGSL namesakes; positions are relative to the eye.
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 use glam::{DMat4, DVec3};
 
 use crate::{
@@ -8,67 +8,69 @@ use crate::{
     frame::{self, DepthRange, Emitter, Phase, Projection, ShadowProjection},
     light::texture::{MappingKind, TextureMapping},
     physics::{medium::Optics, reals},
+    shader::block,
     shadow,
 };
 
-/// `Frame` of `frame.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct FrameUniform {
-    pub(crate) camera: CameraUniform,
-    pub(crate) medium: MediumUniform,
+block! {
+    /// The shaders' `Frame`.
+    pub(crate) struct FrameUniform = "Frame" in "tyndall::gpu::frame", checked by frame_is_laid_out_as_in_wgsl {
+        pub(crate) camera: CameraUniform,
+        pub(crate) medium: MediumUniform,
+    }
 }
 
-/// `Camera` of `camera.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct CameraUniform {
-    pub(crate) right: [f32; 3],
-    pub(crate) near: f32,
-    pub(crate) up: [f32; 3],
-    pub(crate) far: f32,
-    pub(crate) forward: [f32; 3],
-    pub(crate) flags: u32,
-    pub(crate) half_extent: [f32; 2],
-    pub(crate) center: [f32; 2],
-    pub(crate) size: [f32; 2],
-    pad: [f32; 2],
+block! {
+    /// The shaders' `Camera`.
+    pub(crate) struct CameraUniform = "Camera" in "tyndall::camera::camera", checked by camera_is_laid_out_as_in_wgsl {
+        pub(crate) right: [f32; 3],
+        pub(crate) near: f32,
+        pub(crate) up: [f32; 3],
+        pub(crate) far: f32,
+        pub(crate) forward: [f32; 3],
+        pub(crate) flags: u32,
+        pub(crate) half_extent: [f32; 2],
+        pub(crate) center: [f32; 2],
+        pub(crate) size: [f32; 2],
+        pad: [f32; 2],
+    }
 }
 
-/// `Medium` of `medium.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct MediumUniform {
-    pub(crate) sigma_t: [f32; 3],
-    pub(crate) count: u32,
-    pub(crate) components: [MediumComponentUniform; frame::Medium::MAX_COMPONENTS],
+block! {
+    /// The shaders' `Medium`.
+    pub(crate) struct MediumUniform = "Medium" in "tyndall::physics::medium", checked by medium_is_laid_out_as_in_wgsl {
+        pub(crate) sigma_t: [f32; 3],
+        pub(crate) count: u32,
+        pub(crate) components: [MediumComponentUniform; frame::Medium::MAX_COMPONENTS],
+    }
 }
 
-/// `MediumComponent` of `medium.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct MediumComponentUniform {
-    pub(crate) sigma_s: [f32; 3],
-    pub(crate) phase: u32,
-    pub(crate) g: f32,
-    pad: [f32; 3],
+block! {
+    /// The shaders' `MediumComponent`.
+    pub(crate) struct MediumComponentUniform = "MediumComponent" in "tyndall::physics::medium", checked by medium_component_is_laid_out_as_in_wgsl {
+        pub(crate) sigma_s: [f32; 3],
+        pub(crate) phase: u32,
+        pub(crate) g: f32,
+        pad: [f32; 3],
+    }
 }
 
-/// `Light` of `light.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub(crate) struct LightUniform {
-    pub(crate) color: [f32; 3],
-    pub(crate) cos_inner: f32,
-    pub(crate) position: [f32; 3],
-    pub(crate) cos_outer: f32,
-    pub(crate) direction: [f32; 3],
-    pad_direction: f32,
-    pub(crate) texture_rows: [[f32; 4]; 3],
-    pub(crate) clip_from_world: [[f32; 4]; 4],
-    pub(crate) cube_depth: [f32; 2],
-    pub(crate) standard_depth: u32,
-    pad: u32,
+block! {
+    /// The shaders' `Light`.
+    #[derive(Default)]
+    pub(crate) struct LightUniform = "Light" in "tyndall::light::light", checked by light_is_laid_out_as_in_wgsl {
+        pub(crate) color: [f32; 3],
+        pub(crate) cos_inner: f32,
+        pub(crate) position: [f32; 3],
+        pub(crate) cos_outer: f32,
+        pub(crate) direction: [f32; 3],
+        pad_direction: f32,
+        pub(crate) texture_rows: [[f32; 4]; 3],
+        pub(crate) clip_from_world: [[f32; 4]; 4],
+        pub(crate) cube_depth: [f32; 2],
+        pub(crate) standard_depth: u32,
+        pad: u32,
+    }
 }
 
 /// Which kind of light a pipeline is made for: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND`, `SHADOW_GLASS`.
@@ -271,101 +273,4 @@ impl LightUniform {
 
 fn floats(vector: DVec3) -> [f32; 3] {
     vector.as_vec3().to_array()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::mem::{offset_of, size_of};
-
-    use crate::{
-        gpu::shader::{AIRLIGHT, FRAME_MODULES, LIGHT_MODULES, MARCH, STRETCH, join},
-        passes,
-        techniques::{hybrid, light_volume, ray_march},
-    };
-
-    macro_rules! layout {
-        ($type:ty: $($field:ident),+) => {
-            (size_of::<$type>(), vec![$((stringify!($field), offset_of!($type, $field))),+])
-        };
-    }
-
-    #[test]
-    fn blocks_are_laid_out_as_in_wgsl() {
-        let own = [
-            AIRLIGHT,
-            STRETCH,
-            MARCH,
-            ray_march::gpu::PARAMS,
-            passes::occluder::TILE,
-            passes::occluder::VOLUME,
-            hybrid::gpu::HYBRID,
-            light_volume::gpu::CUBE,
-            light_volume::gpu::MESH,
-            light_volume::gpu::SPLITS,
-            light_volume::gpu::GROW,
-        ];
-        let text = join(&[FRAME_MODULES, LIGHT_MODULES, &own]);
-        let module = naga::front::wgsl::parse_str(&text).expect("the joined shader parses");
-        let ours = [
-            ("Frame", layout!(FrameUniform: camera, medium)),
-            (
-                "Camera",
-                layout!(CameraUniform: right, near, up, far, forward, flags, half_extent, center, size),
-            ),
-            ("Medium", layout!(MediumUniform: sigma_t, count, components)),
-            (
-                "MediumComponent",
-                layout!(MediumComponentUniform: sigma_s, phase, g),
-            ),
-            (
-                "Light",
-                layout!(LightUniform: color, cos_inner, position, cos_outer, direction, texture_rows,
-                    clip_from_world, cube_depth, standard_depth),
-            ),
-            (
-                "RayMarchParams",
-                layout!(ray_march::gpu::ParamsUniform: steps, spacing),
-            ),
-            (
-                "HybridParams",
-                layout!(hybrid::gpu::ParamsUniform: steps, bounds, show),
-            ),
-            (
-                "OccluderParams",
-                layout!(passes::occluder::ParamsUniform: first_place, places, edges, triangles, least, walls, most, caps,
-                    counts, columns),
-            ),
-            (
-                "LightVolumeParams",
-                layout!(light_volume::gpu::ParamsUniform: world_from_clip, far_plane, cells, pitch, rows, tolerance,
-                    capacity, mirrored),
-            ),
-            (
-                "LightVolumeStep",
-                layout!(light_volume::tessellation::Step: spacing, is_edge),
-            ),
-        ];
-        for (name, (size, fields)) in ours {
-            let (_, found) = module
-                .types
-                .iter()
-                .find(|(_, t)| t.name.as_deref() == Some(name))
-                .unwrap_or_else(|| panic!("no struct {name}"));
-            let naga::TypeInner::Struct { members, span } = &found.inner else {
-                panic!("{name} is not a struct");
-            };
-            let wgsl: Vec<_> = members
-                .iter()
-                .map(|m| (m.name.as_deref().unwrap_or(""), m.offset as usize))
-                .collect();
-            assert_eq!(wgsl, fields, "{name}");
-            // A block may be padded to 16 bytes at its end.
-            assert_eq!(
-                size.next_multiple_of(16),
-                span.next_multiple_of(16) as usize,
-                "{name}"
-            );
-        }
-    }
 }

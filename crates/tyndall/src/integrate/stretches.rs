@@ -200,26 +200,15 @@ mod tests {
         );
     }
 
-    /// `stretch.wgsl` as the test harness can bind it: all in group 0, made for one kind of light.
+    /// `stretch.wesl` as the test harness can bind it: all in group 0, made for one kind of light.
     #[cfg(feature = "gpu")]
-    fn stretch_modules(kind: u32) -> Vec<String> {
-        use crate::gpu::shader::{
-            AIRLIGHT, CHOICE, CHOICE_ALONE, FRAME_MODULES, LIGHT_MODULES, STRETCH,
-        };
-        let declared = "@group(0) @binding(20) var airlight_table: texture_2d_array<f32>;";
-        [FRAME_MODULES, LIGHT_MODULES, &[AIRLIGHT, STRETCH, declared]]
-            .concat()
-            .iter()
-            .map(|module| {
-                module
-                    .replace(CHOICE, CHOICE_ALONE)
-                    .replace("@group(1) @binding(", "@group(0) @binding(1")
-                    .replace(
-                        "LIGHT_KIND: u32 = 0u",
-                        &format!("LIGHT_KIND: u32 = {kind}u"),
-                    )
-            })
-            .collect()
+    fn stretch_module(kind: u32) -> String {
+        use crate::shader::tests::{harness, in_one_group};
+        let imports = "
+import tyndall::camera::camera::Ray;
+import tyndall::light::stretch::stretch_plain;
+";
+        in_one_group(&harness(imports, &[], &[("LIGHT_KIND", kind)]))
     }
 
     /// The GPU's closed forms and its four-point panels against f64 quadrature, relative to the whole ray.
@@ -230,7 +219,7 @@ mod tests {
             camera::CameraRays,
             frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase},
             gpu::{
-                airlight::AirlightPictures,
+                airlight::AirlightTextures,
                 uniforms::{FrameUniform, LightUniform},
             },
             physics::medium::Optics,
@@ -328,7 +317,7 @@ mod tests {
                 [8, 8],
             )));
             let light_buffer = uniform(bytemuck::bytes_of(&light_uniform));
-            let tables = AirlightPictures::default().of(&gpu.device, &gpu.queue, &medium);
+            let tables = AirlightTextures::default().of(&gpu.device, &gpu.queue, &medium);
             let bindings = [
                 wgpu::BindGroupEntry {
                     binding: 0,
@@ -339,15 +328,13 @@ mod tests {
                     resource: light_buffer.as_entire_binding(),
                 },
                 wgpu::BindGroupEntry {
-                    binding: 20,
+                    binding: 3,
                     resource: wgpu::BindingResource::TextureView(&tables),
                 },
             ];
-            let modules = stretch_modules(variant.kind);
-            let modules: Vec<&str> = modules.iter().map(String::as_str).collect();
             let found = wgsl::evaluate_with(
                 gpu,
-                &modules,
+                &[&stretch_module(variant.kind)],
                 &bindings,
                 "stretch_plain(Ray(vec3f(x[0], x[1], x[2]), 0.0, normalize(vec3f(x[3], x[4], x[5]))), x[6], x[6] + x[7]), 0.0",
                 &inputs,

@@ -279,16 +279,12 @@ mod tests {
         let picture = crate::gpu::airlight::upload(&gpu.device, &gpu.queue, &[&table]);
         let ranges = [-5.0..=0.0, -2.0..=1.5, -20.0..=40.0, 0.0..=30.0, 0.0..=30.0];
         let inputs = tyndall_testkit::samples::in_box(11, 20_000, ranges);
+        let modules = "import tyndall::physics::airlight::{AirlightLight, airlight_segment};";
+        let modules = crate::shader::tests::harness(modules, &[], &[]);
         let found = wgsl::evaluate_with(
             gpu,
-            &[
-                crate::gpu::shader::PHASE,
-                crate::gpu::shader::TRANSMITTANCE,
-                crate::gpu::shader::AIRLIGHT,
-                crate::gpu::shader::CHOICE_ALONE,
-                "@group(0) @binding(0) var airlight_table: texture_2d_array<f32>;",
-            ],
-            &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&picture) }],
+            &[&modules],
+            &[wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::TextureView(&picture) }],
             "airlight_segment(0u, vec3f(pow(10.0, x[0])), AirlightLight(x[2], pow(10.0, x[1])), vec2f(x[3], x[3] + x[4])), 0.0",
             &inputs,
         )

@@ -1,16 +1,11 @@
 //! Passes that are recorded, and do nothing where nothing is stale.
 
-use super::gpu::{BLOCKS, Buffers, REUSE};
+use super::gpu::Buffers;
 use crate::gpu::{
-    layout,
     pass::{Dispatch, Pass, Vertices, Work, Workgroups},
     program::ComputeProgram,
     scope::{LightScope, Shared},
 };
-
-const GATE: &str = include_str!("gate.wgsl");
-const OPEN: &str = include_str!("gate_open.wgsl");
-const PASS: &str = include_str!("gate_pass.wgsl");
 
 /// Bytes of the arguments of one dispatch or draw.
 const STRIDE: u64 = 16;
@@ -22,28 +17,13 @@ pub(super) struct Programs {
 }
 
 impl Programs {
-    pub(super) fn new(
-        device: &wgpu::Device,
-        shared: &Shared,
-        params: wgpu::BindGroupLayoutEntry,
-    ) -> Self {
-        let program = |wgsl, entry_point, more: &[wgpu::BindGroupLayoutEntry]| {
-            let shared_own = [
-                params,
-                layout::storage(1, true),
-                layout::storage(2, true),
-                layout::storage(3, false),
-            ];
-            let own = [&shared_own[..], more].concat();
-            let modules = [REUSE, BLOCKS, GATE, wgsl];
-            ComputeProgram::new(device, shared, "reuse gate", &modules, entry_point, &own)
-                .for_all_lights()
+    pub(super) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let program = |module, entry_point| {
+            ComputeProgram::new(device, shared, module, entry_point).for_all_lights()
         };
-        let written = layout::storage(4, true);
-        let words = layout::uniform::<[u32; 4]>(5);
         Self {
-            open: program(OPEN, "gate_open", &[written]),
-            pass: program(PASS, "gate_pass", &[written, words]),
+            open: program("temporal::gate_open", "gate_open"),
+            pass: program("temporal::gate_pass", "gate_pass"),
         }
     }
 }

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use bytemuck::{Pod, Zeroable};
-
 use super::{
     gate::{self, gate},
     history::{Generations, Placed, Viewpoint},
@@ -13,58 +11,47 @@ use crate::{
     error::PrepareError,
     frame::{Emitter, Light},
     gpu::{
-        cache, layout, limits,
+        cache, limits,
         pass::{Dispatch, Draw, FullScreen, LightPasses, Pass, Vertices, Work, Workgroups},
         program::{ComputeProgram, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
-        shader::MARCH,
         uniforms::CameraUniform,
     },
     inputs::CountValue,
     mesh::Occluder,
-    passes::occluder::{self as volumes, Names, TILE, VolumePrograms, check_list},
+    passes::occluder::{self as volumes, Names, VolumePrograms, check_list},
+    shader::block,
     techniques::{LightRequest, Reach},
 };
 
-pub(super) const REUSE: &str = include_str!("reuse.wgsl");
-const DECIDE: &str = include_str!("decide.wgsl");
-pub(super) const BLOCKS: &str = include_str!("blocks.wgsl");
-const CHANGE: &str = include_str!("change.wgsl");
-const TILES: &str = include_str!("tiles.wgsl");
-const STENCIL: &str = include_str!("stencil.wgsl");
-const SUM: &str = include_str!("sum.wgsl");
-const SHOW: &str = include_str!("show.wgsl");
-const REPROJECT: &str = include_str!("reproject.wgsl");
-const RESTORE: &str = include_str!("restore.wgsl");
-
-/// `ReuseParams` of `reuse.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct ParamsUniform {
-    pub(crate) pixels: [u32; 2],
-    pub(crate) map: [u32; 2],
-    pub(crate) faces: u32,
-    pub(crate) generation: u32,
-    pub(crate) frames: u32,
-    pub(crate) mask: u32,
-    pub(crate) margin: f32,
-    pub(crate) reach: u32,
-    pub(crate) has_witness: u32,
-    pub(crate) levels: u32,
-    pub(crate) kin: u32,
-    pad: [u32; 3],
-    pub(crate) dispatches: [[u32; 4]; MAX_DISPATCHES],
+block! {
+    /// The shaders' `ReuseParams`.
+    pub(crate) struct ParamsUniform = "ReuseParams" in "tyndall::temporal::reuse", checked by reuse_params_is_laid_out_as_in_wgsl {
+        pub(crate) pixels: [u32; 2],
+        pub(crate) map: [u32; 2],
+        pub(crate) faces: u32,
+        pub(crate) generation: u32,
+        pub(crate) frames: u32,
+        pub(crate) mask: u32,
+        pub(crate) margin: f32,
+        pub(crate) reach: u32,
+        pub(crate) has_witness: u32,
+        pub(crate) levels: u32,
+        pub(crate) kin: u32,
+        pad: [u32; 3],
+        pub(crate) dispatches: [[u32; 4]; MAX_DISPATCHES],
+    }
 }
 
-/// `Reproject` of `reproject.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct ReprojectUniform {
-    camera: CameraUniform,
-    eye: [f32; 3],
-    tolerance: f32,
-    rounding: f32,
-    pad: [f32; 3],
+block! {
+    /// The shaders' `Reproject`.
+    struct ReprojectUniform = "Reproject" in "tyndall::temporal::reproject", checked by reproject_is_laid_out_as_in_wgsl {
+        camera: CameraUniform,
+        eye: [f32; 3],
+        tolerance: f32,
+        rounding: f32,
+        pad: [f32; 3],
+    }
 }
 
 const MAX_DISPATCHES: usize = 16;
@@ -96,88 +83,23 @@ pub(crate) struct Programs {
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let params = layout::uniform::<ParamsUniform>(0);
-        let written = |binding| layout::storage(binding, false);
-        let read = |binding| layout::storage(binding, true);
-        let compute = |label, wgsl: &[&str], entry_point, own: &[wgpu::BindGroupLayoutEntry]| {
-            ComputeProgram::new(device, shared, label, wgsl, entry_point, own)
+        let compute =
+            |module, entry_point| ComputeProgram::new(device, shared, module, entry_point);
+        let screen = |module, entry_point| {
+            ScreenProgram::new(device, shared, module, entry_point).for_all_lights()
         };
-        let screen = |label, wgsl: &[&str], entry_point, own: &[wgpu::BindGroupLayoutEntry]| {
-            ScreenProgram::new(device, shared, label, wgsl, entry_point, own)
-        };
-        let change = [
-            params,
-            written(1),
-            written(2),
-            layout::uniform::<[u32; 4]>(3),
-        ];
-        let change = |entry_point| {
-            compute(
-                "reuse change",
-                &[REUSE, BLOCKS, CHANGE],
-                entry_point,
-                &change,
-            )
-        };
-        let aged = [params, read(1), read(2)];
-        let show = [
-            &aged[..],
-            &[layout::texels(3), layout::uniform::<[u32; 4]>(4)],
-        ]
-        .concat();
-        let tiles = [
-            params,
-            written(1),
-            read(2),
-            written(3),
-            written(4),
-            written(5),
-            read(6),
-            read(7),
-        ];
-        let reproject = [
-            params,
-            layout::uniform::<ReprojectUniform>(1),
-            read(2),
-            layout::texels(3),
-            read(4),
-            read(5),
-            written(6),
-        ];
         Self {
-            decide: compute(
-                "reuse decide",
-                &[REUSE, DECIDE],
-                "decide",
-                &[params, written(1), written(2)],
-            )
-            .for_all_lights(),
-            change_finest: change("change_finest"),
-            change_coarser: change("change_coarser"),
-            reproject: compute(
-                "reuse reproject",
-                &[MARCH, REUSE, REPROJECT],
-                "reproject_tile",
-                &reproject,
-            ),
-            tiles: compute(
-                "reuse tiles",
-                &[REUSE, BLOCKS, TILE, TILES],
-                "tiles",
-                &tiles,
-            ),
-            stencil: screen("reuse stencil", &[REUSE, STENCIL], "stencil", &aged).for_all_lights(),
-            restore: screen(
-                "reuse restore",
-                &[REUSE, RESTORE],
-                "restore",
-                &[params, read(1)],
-            )
-            .for_all_lights(),
-            sum: screen("reuse sum", &[SUM], "sum", &[layout::texels(0)]).for_all_lights(),
-            show: screen("reuse show", &[REUSE, STENCIL, SHOW], "show", &show).for_all_lights(),
+            decide: compute("temporal::decide", "decide").for_all_lights(),
+            change_finest: compute("temporal::change", "change_finest"),
+            change_coarser: compute("temporal::change", "change_coarser"),
+            reproject: compute("temporal::reproject", "reproject_tile"),
+            tiles: compute("temporal::tiles", "tiles"),
+            stencil: screen("temporal::stencil", "stencil"),
+            restore: screen("temporal::restore", "restore"),
+            sum: screen("temporal::sum", "reuse_sum"),
+            show: screen("temporal::show", "reuse_show"),
             touched: shared.programs(device),
-            gate: gate::Programs::new(device, shared, params),
+            gate: gate::Programs::new(device, shared),
         }
     }
 }

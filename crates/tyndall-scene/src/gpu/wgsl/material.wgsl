@@ -1,15 +1,15 @@
-// What a surface is made of.
+// The material of a surface.
 
 struct Material {
     // Linear RGBA, multiplied into the texture.
     base_color: vec4f,
-    // Radiance it gives off by itself [W/(m^2 sr)].
+    // Emitted radiance [W/(m^2 sr)].
     emissive: vec3f,
-    // Smallest alpha that blocks, where the material is masked.
+    // Smallest alpha that blocks, if the material is masked.
     cutoff: f32,
-    // What light is multiplied by besides the base colour, where the material is transmissive.
+    // Factor on light besides the base colour, if the material is transmissive.
     transmission: f32,
-    // 1 where the material is blended, 0 where it is transmissive.
+    // 1 if the material is blended, 0 if it is transmissive.
     blended: u32,
 }
 
@@ -21,7 +21,7 @@ fn material_base_color(uv: vec2f) -> vec4f {
     return material.base_color * textureSample(material_texture, material_sampler, uv);
 }
 
-// The finest level: how far away a surface is seen from must not change what it blocks and tints.
+// Samples the finest level: the distance that a surface is seen from must not change its blocking and tint.
 fn material_finest_base_color(uv: vec2f) -> vec4f {
     return material.base_color * textureSampleLevel(material_texture, material_sampler, uv, 0.0);
 }
@@ -30,7 +30,7 @@ fn material_is_hole(uv: vec2f) -> bool {
     return material_finest_base_color(uv).a < material.cutoff;
 }
 
-// What light that goes through is multiplied by.
+// Factor on light that goes through.
 fn material_tint(base_color: vec4f) -> vec3f {
     let blended = 1.0 - base_color.a + base_color.a * base_color.rgb;
     return select(material.transmission * base_color.rgb, blended, material.blended == 1u);

@@ -1,4 +1,5 @@
-// One light's share of what surfaces send to the eye: Lambert; shading.rs is its twin and has the formula.
+// One light's share of the radiance that surfaces send to the eye: Lambert; shading/light.rs is its twin, shading/mod.rs has
+// the formula.
 
 @fragment
 fn shade_light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,4 +1,4 @@
-// What is there without any light: the sky, and what surfaces give off by themselves.
+// Radiance without any light: the sky, and the emission of surfaces.
 
 @fragment
 fn shade_base_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {

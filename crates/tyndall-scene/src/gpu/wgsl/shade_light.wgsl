@@ -14,35 +14,35 @@ struct ShadeLight {
     // Illuminance [W/m^2], intensity [W/sr] or radiance [W/(m^2 sr)].
     color: vec3f,
     kind: u32,
-    // Of a point or spot, or the middle of a rectangle [m].
+    // Position of a point or spot light, or the middle of a rectangle [m].
     position: vec3f,
     cos_inner: f32,
-    // Unit vector: the way light travels, a spot's axis, or a rectangle's bright normal.
+    // Unit vector: the direction light travels in, a spot's axis, or a rectangle's normal on its bright side.
     direction: vec3f,
     cos_outer: f32,
     // A rectangle's edges [m].
     edge_x: vec3f,
-    // Number of points that a rectangle is taken as.
+    // Number of points that stand for a rectangle.
     samples: u32,
     edge_y: vec3f,
     // One of SHADE_PICTURE_*.
     picture: u32,
-    // Products with (point, 1) that give the place on the picture.
+    // Products with (point, 1) that give the texture coordinates.
     picture_rows: array<vec4f, 3>,
     // World space to clip space of each face of the shadow map, 1 at its near plane.
     clip_from_world: array<mat4x4f, 6>,
-    // 0 where nothing blocks the light, 1 for a single map, 6 for a cube.
+    // 0 if nothing blocks the light, 1 for a single map, 6 for a cube.
     faces: u32,
-    // 1 where the map itself holds 0 at its near plane.
+    // 1 if the map itself holds 0 at its near plane.
     standard_depth: u32,
     // Layers a face; 0 without glass.
     glass_layers: u32,
-    // 1 where a picture says how much of the light reaches each pixel's surface.
+    // 1 if a texture holds each pixel's visibility of the light.
     visibility: u32,
 }
 
 struct ShadeIncident {
-    // The way the light travels, unit length.
+    // The direction the light travels in, unit length.
     direction: vec3f,
     // On a surface that faces it [W/m^2].
     irradiance: vec3f,
@@ -52,13 +52,13 @@ struct ShadeIncident {
 @group(1) @binding(3) var shade_picture: texture_2d<f32>;
 @group(1) @binding(4) var shade_picture_sampler: sampler;
 
-// The light's picture, bilinear between texel centres and black outside.
+// The light's texture, bilinear between texel centres and black outside.
 fn shade_picture_color(uv: vec2f) -> vec3f {
     let inside = all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
     return select(vec3f(0.0), textureSampleLevel(shade_picture, shade_picture_sampler, uv, 0.0).rgb, inside);
 }
 
-// The place on the picture, (0, 0) top left, that a point is lit through.
+// Texture coordinates that a point is lit through, (0, 0) top left.
 fn shade_picture_place(point: vec3f) -> vec2f {
     let p = vec4f(point, 1.0);
     let rows = shade_light.picture_rows;
@@ -91,7 +91,7 @@ fn shade_spot_falloff(cos_angle: f32) -> f32 {
     return t * t;
 }
 
-// Light of 1 W/sr from a position, attenuated on its way.
+// Light of 1 W/sr from a position, attenuated up to the point.
 fn shade_from(position: vec3f, point: vec3f) -> ShadeIncident {
     let offset = point - position;
     let distance2 = max(dot(offset, offset), shade_view.light_radius * shade_view.light_radius);
@@ -141,7 +141,7 @@ fn shade_direct(point: vec3f, normal: vec3f) -> vec3f {
     return color * incident.irradiance * falloff;
 }
 
-// Irradiance from all around: the light without its cone, picture and shadow, dimmed [W/m^2].
+// Irradiance from all around: the light without its cone, texture and shadow, dimmed [W/m^2].
 fn shade_ambient(point: vec3f, normal: vec3f) -> vec3f {
     let ambient = shade_view.ambient * (1.0 + shade_view.ambient_tilt * normal.y);
     let color = ambient * shade_light.color;

@@ -1,4 +1,5 @@
-// How much of a light reaches a surface, from its shadow map or from a picture that says so; see shading.rs for the reasons.
+// Visibility of a light from a surface, from its shadow map or from a texture; shading/shadow_map.rs is the twin and
+// shading/mod.rs has the reasons.
 
 @group(1) @binding(1) var shade_shadow_map: texture_depth_2d_array;
 @group(1) @binding(2) var shade_glass: texture_2d_array<u32>;
@@ -29,7 +30,7 @@ fn shade_texel_size(point: vec3f) -> f32 {
     return 2.0 * max((clip_from_world * vec4f(point, 1.0)).w, 0.0) / min(per_meter.x, per_meter.y);
 }
 
-// Whether what the map holds is nearer to the light than a depth (1 nearest); 0 is nothing at all.
+// True if a held depth is nearer to the light than `depth` (1 nearest); nothing was drawn where it is 0.
 fn shade_hides(held: f32, depth: f32) -> bool {
     let stored = select(held, 1.0 - held, shade_light.standard_depth == 1u);
     return stored > 0.0 && depth < stored;
@@ -58,7 +59,7 @@ fn shade_texel_tint(face: u32, texel: vec2f, depth: f32) -> vec3f {
     return tint;
 }
 
-// What light that reaches a surface is multiplied by: what a picture says, or four texels, weighted bilinearly.
+// Share of the light that reaches a surface: the visibility texture's, or that of four texels, weighted bilinearly.
 fn shade_visibility(pixel: vec2u, surface: vec3f, normal: vec3f) -> vec3f {
     if shade_choice(shade_light.visibility) == 1u {
         return textureLoad(shade_seen, pixel, 0).rgb;

@@ -3,7 +3,7 @@
 const SHADE_PI: f32 = 3.14159265358979;
 
 struct ShadeView {
-    // Half the picture's width and height as directions: at view depth 1 (perspective) or at any (orthographic) [m].
+    // Half the image's width and height as directions: at view depth 1 (perspective) or at any (orthographic) [m].
     right: vec3f,
     near: f32,
     up: vec3f,
@@ -12,7 +12,7 @@ struct ShadeView {
     forward: vec3f,
     // 0: 0 at the near plane, 1: 1 at the near plane, 2: near / view depth.
     depth_range: u32,
-    // The picture's centre off the viewing direction or axis, as `right` and `up`.
+    // Offset of the image's centre from the viewing direction or axis, in the units of `right` and `up`.
     center: vec3f,
     orthographic: u32,
     // Extinction coefficient of the medium [1/m].
@@ -21,14 +21,14 @@ struct ShadeView {
     ambient: f32,
     // Illuminance of all directional lights [W/m^2].
     sun: vec3f,
-    // How far a point moves along its normal before its shadow is looked up [texels].
+    // Offset along its normal at which a point's shadow is looked up [texels].
     normal_offset: f32,
     // Radiance of the sky, relative to the sun's illuminance [1/sr].
     sky_horizon: vec3f,
     // A point light's radius, inside which 1 / d^2 grows no further [m].
     light_radius: f32,
     sky_zenith: vec3f,
-    // How much more of `ambient` falls on what faces up, and less on what faces down.
+    // Share of `ambient` that surfaces facing up get more, and surfaces facing down less.
     ambient_tilt: f32,
 }
 
@@ -39,13 +39,13 @@ struct ShadeView {
 @group(0) @binding(4) var shade_emissive: texture_2d<f32>;
 @group(0) @binding(5) var shade_view_tint: texture_2d<f32>;
 
-// A small number from a uniform that decides which way a shader goes. lavapipe compiles a shader anew, whenever it is bound,
+// A small number from a uniform that branches or loops depend on. lavapipe compiles a shader anew, whenever it is bound,
 // for the uniforms that all of a branch hangs on; of a texture's size it knows nothing.
 fn shade_choice(value: u32) -> u32 {
     return min(value, 0xffffu * textureDimensions(shade_depth).x);
 }
 
-// One triangle over the whole picture.
+// One triangle over the whole image.
 @vertex
 fn shade_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));

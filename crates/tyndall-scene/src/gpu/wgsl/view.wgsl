@@ -1,4 +1,4 @@
-// Where the scene is seen from: a camera or a light.
+// The viewpoint: a camera or a light.
 
 struct View {
     // Clip space from world-space offsets from `origin`.

@@ -1,4 +1,4 @@
-// What glass and blended surfaces in front of the first opaque surface multiply its light by.
+// Factor of the glass and blended surfaces in front of the first opaque surface on its light.
 
 @fragment
 fn view_tint_fragment(fragment: MeshFragment) -> @location(0) vec4f {

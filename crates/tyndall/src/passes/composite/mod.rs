@@ -1,11 +1,6 @@
 //! The picture behind the medium: background * transmittance + in-scattered light, `composite.wgsl`.
 
-use crate::gpu::{
-    program::Raster,
-    shader::{self, FRAME_MODULES},
-};
-
-const COMPOSITE: &str = include_str!("composite.wgsl");
+use crate::gpu::{program::Raster, scope::Shared};
 
 /// Two draws in the caller's pass: attenuate what is there, then add the light.
 pub(crate) struct Composite {
@@ -14,16 +9,12 @@ pub(crate) struct Composite {
 }
 
 impl Composite {
-    pub(crate) fn new(
-        device: &wgpu::Device,
-        frame: &wgpu::BindGroupLayout,
-        target: wgpu::TextureFormat,
-    ) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, shared: &Shared, target: wgpu::TextureFormat) -> Self {
         use wgpu::BlendFactor::{Dst, One, Zero};
-        let module = shader::create(device, "composite", &[FRAME_MODULES, &[COMPOSITE]]);
+        let shader = shared.shaders.get(device, "passes::composite::composite");
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("composite"),
-            bind_group_layouts: &[Some(frame)],
+            bind_group_layouts: &[Some(&shared.frame_layout)],
             immediate_size: 0,
         });
         let component = |src_factor, dst_factor| wgpu::BlendComponent {
@@ -41,7 +32,7 @@ impl Composite {
                 write_mask: wgpu::ColorWrites::ALL,
             };
             let raster = Raster::full_screen(target);
-            raster.pipeline(device, entry_point, &module, entry_point, &layout, &[])
+            raster.pipeline(device, &shader.module, entry_point, &layout, &[])
         };
         Self {
             attenuate: pipeline("composite_attenuate", component(Dst, Zero)),

@@ -1,42 +1,39 @@
 //! The epipolar grid as shaders see it: `epipolar.wgsl`.
 
-use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::{
     epipolar::grid::{EpipolarGrid, GridScene},
     gpu::scope::LightScope,
     light::LightModel,
+    shader::block,
     shadow,
 };
 
-/// What a shader needs that works in epipolar coordinates.
-pub(crate) const EPIPOLAR: &str = include_str!("epipolar.wgsl");
-
-/// `Epipolar` of `epipolar.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct EpipolarUniform {
-    pub(crate) axis: [f32; 3],
-    pub(crate) distance: f32,
-    pub(crate) across_x: [f32; 3],
-    pub(crate) alpha_start: f32,
-    pub(crate) across_y: [f32; 3],
-    pub(crate) alpha_step: f32,
-    pub(crate) gamma_start: f32,
-    pub(crate) gamma_step: f32,
-    pub(crate) b_start: f32,
-    pub(crate) b_scale: f32,
-    pub(crate) slices: u32,
-    pub(crate) samples: u32,
-    pub(crate) least_off_axis: f32,
-    pub(crate) cotangent: f32,
-    pub(crate) tint_start: f32,
-    pub(crate) tint_step: f32,
-    pub(crate) tint_columns: u32,
-    pub(crate) turns: u32,
-    pub(crate) position: [f32; 3],
-    pub(crate) pad: u32,
+block! {
+    /// The shaders' `Epipolar`.
+    pub(crate) struct EpipolarUniform = "Epipolar" in "tyndall::passes::epipolar::epipolar", checked by epipolar_is_laid_out_as_in_wgsl {
+        pub(crate) axis: [f32; 3],
+        pub(crate) distance: f32,
+        pub(crate) across_x: [f32; 3],
+        pub(crate) alpha_start: f32,
+        pub(crate) across_y: [f32; 3],
+        pub(crate) alpha_step: f32,
+        pub(crate) gamma_start: f32,
+        pub(crate) gamma_step: f32,
+        pub(crate) b_start: f32,
+        pub(crate) b_scale: f32,
+        pub(crate) slices: u32,
+        pub(crate) samples: u32,
+        pub(crate) least_off_axis: f32,
+        pub(crate) cotangent: f32,
+        pub(crate) tint_start: f32,
+        pub(crate) tint_step: f32,
+        pub(crate) tint_columns: u32,
+        pub(crate) turns: u32,
+        pub(crate) position: [f32; 3],
+        pub(crate) pad: u32,
+    }
 }
 
 impl EpipolarUniform {

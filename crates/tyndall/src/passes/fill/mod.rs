@@ -1,13 +1,11 @@
 //! Buffers whose words are all set to one value.
 
 use crate::gpu::{
-    cache, layout,
+    cache,
     pass::Dispatch,
     program::ComputeProgram,
     scope::{LightScope, Shared},
 };
-
-pub(crate) const FILL: &str = include_str!("fill.wgsl");
 
 /// The most workgroups a dimension may have on every device.
 const MAX_WORKGROUPS: u64 = 65_535;
@@ -19,8 +17,7 @@ pub(crate) struct Fill(ComputeProgram);
 
 impl cache::Programs for Fill {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let own = [layout::uniform::<[u32; 4]>(0), layout::storage(1, false)];
-        let program = ComputeProgram::new(device, shared, "fill", &[FILL], "fill_words", &own);
+        let program = ComputeProgram::new(device, shared, "passes::fill::fill", "fill_words");
         Self(program.for_all_lights())
     }
 }
@@ -45,6 +42,7 @@ impl Fill {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shader::tests::harness;
     use tyndall_testkit::{device::device_or_skip, wgsl};
     use wgpu::util::DeviceExt;
 
@@ -67,7 +65,8 @@ mod tests {
             let words = vec![1_u32; count];
             let words = buffer(bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
             let bound = (2, &[&uniform, &words][..]);
-            wgsl::dispatch(gpu, &[FILL], "fill_words", &[], bound, [groups, 1, 1])
+            let fill = harness("import tyndall::passes::fill::fill::fill_words;", &[], &[]);
+            wgsl::dispatch(gpu, &[&fill], "fill_words", &[], bound, [groups, 1, 1])
                 .expect("the shader runs");
             let found: Vec<u32> = gpu.read_buffer(&words).expect("readable");
             assert_eq!(found, vec![7; count]);

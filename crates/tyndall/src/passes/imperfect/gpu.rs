@@ -2,14 +2,13 @@
 
 use std::{f64::consts::TAU, sync::Arc};
 
-use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::{
     error::PrepareError,
     frame::Emitter,
     gpu::{
-        cache, layout, limits,
+        cache, limits,
         pass::Pass,
         program::ComputeProgram,
         scope::{Blocks, LightScope, Shared},
@@ -18,15 +17,8 @@ use crate::{
     light::halton::halton,
     passes::fill::Fill,
     physics::reals,
+    shader::block,
 };
-
-/// Samples and projection.
-pub(crate) const IMPERFECT: &str = include_str!("imperfect.wgsl");
-/// Look-ups; needs batch, samples and maps.
-pub(crate) const LOOKUP: &str = include_str!("lookup.wgsl");
-const COLORS: &str = include_str!("colors.wgsl");
-pub(super) const SPLAT: &str = include_str!("splat.wgsl");
-pub(super) const PULL_PUSH: &str = include_str!("pull_push.wgsl");
 
 /// Samples that a workgroup takes.
 const THREADS: u32 = 64;
@@ -40,30 +32,30 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 /// What a texel holds that nothing was drawn on.
 pub(crate) const NOTHING: u32 = u32::MAX;
 
-/// `ImperfectBatch` of `imperfect.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct BatchUniform {
-    pub(crate) first: u32,
-    pub(crate) count: u32,
-    pub(crate) total: u32,
-    pub(crate) side: u32,
-    pub(crate) points: u32,
-    pub(crate) cloud: u32,
-    pub(crate) spread: f32,
-    pub(crate) share: f32,
+block! {
+    /// The shaders' `ImperfectBatch`.
+    pub(crate) struct BatchUniform = "ImperfectBatch" in "tyndall::passes::imperfect::imperfect", checked by imperfect_batch_is_laid_out_as_in_wgsl {
+        pub(crate) first: u32,
+        pub(crate) count: u32,
+        pub(crate) total: u32,
+        pub(crate) side: u32,
+        pub(crate) points: u32,
+        pub(crate) cloud: u32,
+        pub(crate) spread: f32,
+        pub(crate) share: f32,
+    }
 }
 
-/// `ImperfectSample` of `imperfect.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct SampleUniform {
-    pub(crate) position: [f32; 3],
-    pub(crate) first_point: u32,
-    pub(crate) world: [f32; 3],
-    pad_world: u32,
-    pub(crate) tangent: [f32; 3],
-    pad_tangent: u32,
+block! {
+    /// The shaders' `ImperfectSample`.
+    pub(crate) struct SampleUniform = "ImperfectSample" in "tyndall::passes::imperfect::imperfect", checked by imperfect_sample_is_laid_out_as_in_wgsl {
+        pub(crate) position: [f32; 3],
+        pub(crate) first_point: u32,
+        pub(crate) world: [f32; 3],
+        pad_world: u32,
+        pub(crate) tangent: [f32; 3],
+        pad_tangent: u32,
+    }
 }
 
 /// A rectangle taken as samples, and what their maps are made of.
@@ -223,23 +215,13 @@ pub(crate) struct Buffers {
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let batch = layout::uniform::<BatchUniform>(0);
-        let read = |binding| layout::storage(binding, true);
-        let write = |binding| layout::storage(binding, false);
-        let program = |label, wgsl, entry_point, own: &[_]| {
-            ComputeProgram::new(device, shared, label, &[IMPERFECT, wgsl], entry_point, own)
-        };
-        let own = [batch, read(1), write(2)];
-        let colors = program("sample light", COLORS, "imperfect_color", &own);
-        let own = [batch, read(1), read(2), write(3)];
-        let splat = program("splat points", SPLAT, "imperfect_splat", &own).for_all_lights();
-        let own = [batch, write(1)];
-        let pull_push = program("pull-push", PULL_PUSH, "pull_push", &own).for_all_lights();
+        let program =
+            |module, entry_point| ComputeProgram::new(device, shared, module, entry_point);
         Self {
             fill: shared.programs(device),
-            colors,
-            splat,
-            pull_push,
+            colors: program("passes::imperfect::colors", "imperfect_color"),
+            splat: program("passes::imperfect::splat", "imperfect_splat").for_all_lights(),
+            pull_push: program("passes::imperfect::pull_push", "pull_push").for_all_lights(),
         }
     }
 }

@@ -10,16 +10,24 @@ use tyndall_testkit::{
 use wgpu::util::DeviceExt;
 
 use super::{
-    gpu::{AreaLight, IMPERFECT, LOOKUP, Maps, NOTHING, PULL_PUSH, SPLAT},
+    gpu::{AreaLight, Maps, NOTHING},
     twin,
 };
-use crate::{frame::Emitter, physics::reals};
+use crate::{
+    frame::Emitter,
+    physics::reals,
+    shader::tests::{harness, in_one_group},
+};
 
-/// Stands for the light's bind group: a light that shines along -z.
-const LIGHT: &str = "
-    const PI: f32 = 3.14159265358979;
-    struct TestLight { direction: vec3f }
-    const light = TestLight(vec3f(0.0, 0.0, -1.0));";
+/// Stands for the light's module and its bind group: a light that shines along -z.
+const LIGHT: (&str, &str) = (
+    "tyndall::light::light",
+    "struct TestLight { direction: vec3f }\nconst light = TestLight(vec3f(0.0, 0.0, -1.0));\n",
+);
+
+fn modules(imports: &str) -> String {
+    harness(imports, &[LIGHT], &[])
+}
 
 fn buffer(gpu: &TestDevice, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let usage = usage | wgpu::BufferUsages::COPY_SRC;
@@ -65,7 +73,10 @@ fn the_projection_s_twin_agrees() {
     );
     let expression = "imperfect_place(vec3f(x[0], x[1], x[2])),
         f32(imperfect_texel(50u, imperfect_place(vec3f(x[0], x[1], x[2])))), f32(imperfect_reach(50u, x[3], x[4]))";
-    let found = wgsl::evaluate(gpu, &[LIGHT, IMPERFECT], expression, &inputs).expect("it runs");
+    let modules = modules(
+        "import tyndall::passes::imperfect::imperfect::{imperfect_place, imperfect_reach, imperfect_texel};",
+    );
+    let found = wgsl::evaluate(gpu, &[&modules], expression, &inputs).expect("it runs");
     for (x, found) in inputs.iter().zip(found) {
         let local = DVec3::new(x[0].into(), x[1].into(), x[2].into());
         let place = twin::place(local);
@@ -123,10 +134,10 @@ fn splats_are_those_of_single_points() {
         buffer(gpu, bytemuck::cast_slice(&texels), storage),
     ];
     let bound: Vec<&wgpu::Buffer> = buffers.iter().collect();
-    let modules = [LIGHT, IMPERFECT, SPLAT];
+    let modules = modules("import tyndall::passes::imperfect::splat::imperfect_splat;");
     wgsl::dispatch(
         gpu,
-        &modules,
+        &[&modules],
         "imperfect_splat",
         &[],
         (2, &bound),
@@ -198,10 +209,10 @@ fn holes_are_filled_as_by_the_twin() {
             wgpu::BufferUsages::STORAGE,
         );
         let groups = [side.div_ceil(32), side.div_ceil(32), 2];
-        let modules = [LIGHT, IMPERFECT, PULL_PUSH];
+        let modules = modules("import tyndall::passes::imperfect::pull_push::pull_push;");
         wgsl::dispatch(
             gpu,
-            &modules,
+            &[&modules],
             "pull_push",
             &[],
             (2, &[&uniform, &texels]),
@@ -262,22 +273,19 @@ fn lookups_find_the_texel_of_their_way() {
         buffer(gpu, bytemuck::cast_slice(&samples), storage),
         buffer(gpu, bytemuck::cast_slice(&words), storage),
     ];
-    let bindings: Vec<_> = (0..)
+    let bindings: Vec<_> = (20..)
         .zip(&buffers)
         .map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding,
             resource: buffer.as_entire_binding(),
         })
         .collect();
-    let declared = "
-        @group(0) @binding(0) var<uniform> imperfect_batch: ImperfectBatch;
-        @group(0) @binding(1) var<storage, read> imperfect_samples: array<ImperfectSample>;
-        @group(0) @binding(2) var<storage, read> imperfect_maps: array<u32>;";
     let inputs = in_box(1, 3000, [-1.0..=1.0, -1.0..=1.0, -1.0..=0.2, 0.0..=1.99]);
-    let modules = [LIGHT, IMPERFECT, declared, LOOKUP];
+    let modules = modules("import tyndall::passes::imperfect::lookup::imperfect_end;");
+    let modules = in_one_group(&modules);
     let expression = "imperfect_end(u32(x[3]), vec3f(x[0], x[1], x[2]))";
     let found =
-        wgsl::evaluate_with(gpu, &modules, &bindings, expression, &inputs).expect("it runs");
+        wgsl::evaluate_with(gpu, &[&modules], &bindings, expression, &inputs).expect("it runs");
     let mut looked_up = 0;
     for (input, found) in inputs.iter().zip(found) {
         let tile = input[3] as usize;

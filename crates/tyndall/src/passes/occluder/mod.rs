@@ -21,46 +21,35 @@
 
 use std::ops::Range;
 
-use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, Mat4};
 
 use crate::mesh::{Occluder, OccluderMesh};
 use crate::{
     error::PrepareError,
     gpu::{
-        cache, layout, limits,
+        cache, limits,
         pass::{Dispatch, Pass},
         program::ComputeProgram,
         scope::{Blocks, LightScope, Shared},
     },
+    shader::block,
 };
 
-/// What is kept of the boundaries on the screen; needs the frame.
-pub(crate) const TILE: &str = include_str!("tile.wgsl");
-/// The boundaries themselves; needs frame and light.
-pub(crate) const VOLUME: &str = include_str!("volume.wgsl");
-const LIST: &str = include_str!("list.wgsl");
-const CLEAR: &str = include_str!("clear.wgsl");
-const EYE: &str = include_str!("eye.wgsl");
-const WRITE: &str = include_str!("write.wgsl");
-const SHADED: &str = include_str!("shaded.wgsl");
-const BOUNDS: &str = include_str!("bounds.wgsl");
-
-/// `OccluderParams` of `volume.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct ParamsUniform {
-    pub(crate) first_place: u32,
-    pub(crate) places: u32,
-    pub(crate) edges: u32,
-    pub(crate) triangles: u32,
-    pub(crate) least: [f32; 3],
-    pub(crate) walls: u32,
-    pub(crate) most: [f32; 3],
-    pub(crate) caps: u32,
-    pub(crate) counts: u32,
-    pub(crate) columns: u32,
-    pad: [u32; 2],
+block! {
+    /// The shaders' `OccluderParams`.
+    pub(crate) struct ParamsUniform = "OccluderParams" in "tyndall::passes::occluder::volume", checked by occluder_params_is_laid_out_as_in_wgsl {
+        pub(crate) first_place: u32,
+        pub(crate) places: u32,
+        pub(crate) edges: u32,
+        pub(crate) triangles: u32,
+        pub(crate) least: [f32; 3],
+        pub(crate) walls: u32,
+        pub(crate) most: [f32; 3],
+        pub(crate) caps: u32,
+        pub(crate) counts: u32,
+        pub(crate) columns: u32,
+        pad: [u32; 2],
+    }
 }
 
 /// Elements that a workgroup looks at, tiles that it clears.
@@ -75,17 +64,6 @@ const MAX_SHARING: u32 = 512;
 const SIDE: u32 = 4;
 /// Triangles of a box.
 const OF_BOX: u32 = 12;
-
-/// The resources of `volume.wgsl`.
-fn own() -> [wgpu::BindGroupLayoutEntry; 4] {
-    let [places, corners, elements] = [0, 1, 2].map(|binding| layout::storage(binding, true));
-    [
-        places,
-        corners,
-        elements,
-        layout::uniform::<ParamsUniform>(3),
-    ]
-}
 
 /// The shaders that find the boundaries on the screen.
 pub(crate) struct VolumePrograms {
@@ -102,29 +80,14 @@ pub(crate) struct VolumePrograms {
 
 impl cache::Programs for VolumePrograms {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let written = |binding| layout::storage(binding, false);
-        let read = |binding| layout::storage(binding, true);
-        let program = |modules: &[&str], entry_point, own: &[wgpu::BindGroupLayoutEntry]| {
-            ComputeProgram::new(device, shared, "occluders", modules, entry_point, own)
-        };
-        let clear = |entry_point| {
-            program(&[TILE, CLEAR], entry_point, &[written(0), written(1)]).for_all_lights()
-        };
-        let of_mesh = |modules: &[&str], entry_point, more: &[wgpu::BindGroupLayoutEntry]| {
-            let own = [&own()[..], more].concat();
-            program(&[&[VOLUME], modules].concat(), entry_point, &own)
-        };
-        let list = |entry_point| {
-            let more = [4, 5, 6].map(written);
-            of_mesh(&[TILE, WRITE, LIST], entry_point, &more)
-        };
-        let bounds = |entry_point| {
-            let more = [read(4), read(5), written(6)];
-            of_mesh(&[TILE, WRITE, SHADED, BOUNDS], entry_point, &more)
-        };
+        let program =
+            |module, entry_point| ComputeProgram::new(device, shared, module, entry_point);
+        let clear = |entry_point| program("passes::occluder::clear", entry_point).for_all_lights();
+        let list = |entry_point| program("passes::occluder::list", entry_point);
+        let bounds = |entry_point| program("passes::occluder::bounds", entry_point);
         Self {
             clear_eye: clear("clear_eye"),
-            eye: of_mesh(&[EYE], "eye_triangle", &[written(4)]),
+            eye: program("passes::occluder::eye", "eye_triangle"),
             list_clear: list("list_clear").for_all_lights(),
             list_walls: list("list_walls"),
             list_caps: list("list_caps"),

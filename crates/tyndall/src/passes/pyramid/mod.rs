@@ -1,15 +1,11 @@
 //! Nearest and farthest depth over squares of a shadow map's texels, on the GPU: `pyramid.wgsl`.
 
 use crate::gpu::{
-    cache, layout,
+    cache,
     pass::{Pass, Work},
     program::ScreenProgram,
     scope::{LightScope, Shared},
 };
-
-/// What a shader needs that reads a pyramid.
-pub(crate) const PYRAMID: &str = include_str!("pyramid.wgsl");
-const BUILD: &str = include_str!("pyramid_build.wgsl");
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
@@ -40,18 +36,11 @@ pub(crate) struct Programs {
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let own = [layout::uniform::<[u32; 4]>(0), layout::texels(1)];
         let program = |source: f64| {
-            ScreenProgram::new(
-                device,
-                shared,
-                "pyramid",
-                &[PYRAMID, BUILD],
-                "pyramid_build",
-                &own,
-            )
-            .writing(FORMAT)
-            .with("PYRAMID_SOURCE", source)
+            let module = "passes::pyramid::pyramid_build";
+            ScreenProgram::new(device, shared, module, "pyramid_build")
+                .writing(FORMAT)
+                .with("PYRAMID_SOURCE", source)
         };
         Self {
             next: program(0.0),

@@ -1,17 +1,11 @@
 //! Grids of voxels in a storage buffer, one after another.
 
 use crate::gpu::{
-    cache, layout,
+    cache,
     pass::Pass,
     program::ComputeProgram,
     scope::{LightScope, Shared},
 };
-
-/// Places of voxels, and queries of a word.
-pub(crate) const VOXELS: &str = include_str!("voxels.wgsl");
-/// Queries of a row; needs `VOXELS` and a buffer `voxels`.
-pub(crate) const RUNS: &str = include_str!("runs.wgsl");
-pub(super) const SCAN: &str = include_str!("scan.wgsl");
 
 /// Bytes of one grid.
 pub(crate) fn bytes(side: u32) -> u64 {
@@ -45,9 +39,8 @@ pub(crate) struct Scan {
 
 impl cache::Programs for Scan {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let own = [layout::uniform::<[u32; 4]>(0), layout::storage(1, false)];
         let program = |parts: u32| {
-            ComputeProgram::new(device, shared, "scan", &[SCAN], "voxel_scan_rows", &own)
+            ComputeProgram::new(device, shared, "passes::voxels::scan", "voxel_scan_rows")
                 .with("VOXEL_SCAN_PARTS", parts.into())
                 .for_all_lights()
         };

@@ -3,8 +3,10 @@
 use tyndall_testkit::{device::device_or_skip, samples::in_box, wgsl};
 use wgpu::util::DeviceExt;
 
+use crate::shader::tests::{harness, in_one_group};
+
 use super::{
-    gpu::{RUNS, SCAN, VOXELS, scan_columns, scan_groups},
+    gpu::{scan_columns, scan_groups},
     twin::{self, Grid},
 };
 
@@ -21,6 +23,11 @@ fn scan_is_the_or_of_all_before() {
     let Some(gpu) = device_or_skip("scan.wgsl") else {
         return;
     };
+    let scan = harness(
+        "import tyndall::passes::voxels::scan::voxel_scan_rows;",
+        &[],
+        &[],
+    );
     let sizes = [(64_usize, 3), (128, 2), (160, 1), (256, 1)];
     for ((side, grids), parts) in sizes.iter().flat_map(|size| [(*size, 1), (*size, 16)]) {
         let given = words(side as u64, grids * side.pow(3) / 32);
@@ -41,7 +48,7 @@ fn scan_is_the_or_of_all_before() {
         let voxels = buffer(bytemuck::cast_slice(&given), wgpu::BufferUsages::STORAGE);
         wgsl::dispatch(
             gpu,
-            &[SCAN],
+            &[&scan],
             "voxel_scan_rows",
             &[("VOXEL_SCAN_PARTS", parts.into())],
             (2, &[&uniform, &voxels]),
@@ -81,14 +88,14 @@ fn queries_are_those_of_single_bits() {
     };
     let voxels = gpu.device.create_buffer_init(&init);
     let binding = [wgpu::BindGroupEntry {
-        binding: 0,
+        binding: 21,
         resource: voxels.as_entire_binding(),
     }];
-    let modules = [
-        VOXELS,
-        RUNS,
-        "@group(0) @binding(0) var<storage, read> voxels: array<u32>;",
-    ];
+    let modules = "
+import tyndall::passes::voxels::voxels::{voxel_dark, voxel_end, voxel_row};
+import tyndall::techniques::voxelized::runs::{voxel_next, vsv_voxels};
+";
+    let modules = in_one_group(&harness(modules, &[], &[]));
     let most = side as f32;
     let ranges = [
         0.0..=most - 0.001,
@@ -100,9 +107,10 @@ fn queries_are_those_of_single_bits() {
     let expression = "
         f32(voxel_next(96u, voxel_row(96u, u32(x[0]), u32(x[1])), u32(x[2]), 0u)),
         f32(voxel_next(96u, voxel_row(96u, u32(x[0]), u32(x[1])), u32(x[2]), 0xffffffffu)),
-        voxel_dark(voxels[voxel_row(96u, u32(x[0]), u32(x[1]))], x[2] / 3.0),
+        voxel_dark(vsv_voxels[voxel_row(96u, u32(x[0]), u32(x[1]))], x[2] / 3.0),
         f32(voxel_end(96u, x[3]))";
-    let found = wgsl::evaluate_with(gpu, &modules, &binding, expression, &inputs).expect("it runs");
+    let found =
+        wgsl::evaluate_with(gpu, &[&modules], &binding, expression, &inputs).expect("it runs");
     for (x, found) in inputs.iter().zip(found) {
         let [slice, row, column] = [x[0], x[1], x[2]].map(|x| x as usize);
         let row = grid.row(slice, row);

@@ -1,7 +1,6 @@
 //! The GPU side: the article's stages, each a pass, one WGSL file a stage.
 
-use bytemuck::{Pod, Zeroable};
-use wgpu::{BindGroupLayoutEntry, BindingResource, TextureFormat};
+use wgpu::{BindingResource, TextureFormat};
 
 use super::{
     params::{Criterion, Params, Show},
@@ -11,24 +10,14 @@ use crate::{
     epipolar::epipole::Epipole,
     error::PrepareError,
     gpu::{
-        cache, layout,
+        cache,
         pass::{Dispatch, FullScreen, LightPasses, Pass, Work, Workgroups},
         program::{ComputeProgram, Raster, ScreenProgram},
         scope::{LightScope, Shared},
-        shader::{AIRLIGHT, SCREEN, STRETCH, TRACE},
     },
+    shader::block,
     techniques::method::{GpuMethod, LightRequest},
 };
-
-/// Parameters that all stages read.
-pub(crate) const COMMON: &str = include_str!("common.wgsl");
-const COARSE: &str = include_str!("coarse.wgsl");
-const MARCH: &str = include_str!("march.wgsl");
-const UNSHADOWED: &str = include_str!("unshadowed.wgsl");
-const FILTER: &str = include_str!("filter.wgsl");
-const OUTPUT: &str = include_str!("output.wgsl");
-const POINTS: &str = include_str!("points.wgsl");
-const GROUP_SIZE: &str = include_str!("group.wgsl");
 
 /// Invocations a group of the stages over samples, slices and lists.
 const GROUP: u32 = 64;
@@ -43,41 +32,41 @@ const LISTS: u64 = 3;
 /// From the length of one list to the next: that of an indirect draw.
 const COUNT_BYTES: u64 = 16;
 
-/// `SamplingParams` of `common.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct ParamsUniform {
-    pub(crate) epipole: [f32; 3],
-    pub(crate) slices: u32,
-    pub(crate) axis: [f32; 3],
-    pub(crate) samples: u32,
-    pub(crate) initial_step: u32,
-    pub(crate) threshold: f32,
-    pub(crate) criterion: u32,
-    pub(crate) columns: u32,
-    pub(crate) levels: u32,
-    pub(crate) downscale: u32,
-    pub(crate) show: u32,
-    pad: u32,
-    pub(crate) coarse_size: [u32; 2],
-    pub(crate) arc: [f32; 2],
+block! {
+    /// The shaders' `SamplingParams`.
+    pub(crate) struct ParamsUniform = "SamplingParams" in "tyndall::techniques::epipolar_sampling::common", checked by sampling_params_is_laid_out_as_in_wgsl {
+        pub(crate) epipole: [f32; 3],
+        pub(crate) slices: u32,
+        pub(crate) axis: [f32; 3],
+        pub(crate) samples: u32,
+        pub(crate) initial_step: u32,
+        pub(crate) threshold: f32,
+        pub(crate) criterion: u32,
+        pub(crate) columns: u32,
+        pub(crate) levels: u32,
+        pub(crate) downscale: u32,
+        pub(crate) show: u32,
+        pad: u32,
+        pub(crate) coarse_size: [u32; 2],
+        pub(crate) arc: [f32; 2],
+    }
 }
 
-/// `TreeParams` of `tree.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct TreeUniform {
-    pub(crate) base: u32,
-    pad: [u32; 3],
+block! {
+    /// The shaders' `TreeParams`.
+    pub(crate) struct TreeUniform = "TreeParams" in "tyndall::techniques::epipolar_sampling::tree", checked by tree_params_is_laid_out_as_in_wgsl {
+        pub(crate) base: u32,
+        pad: [u32; 3],
+    }
 }
 
-/// `CorrectParams` of `correct.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct CorrectUniform {
-    pub(crate) list: u32,
-    pub(crate) downscale: u32,
-    pad: [u32; 2],
+block! {
+    /// The shaders' `CorrectParams`.
+    pub(crate) struct CorrectUniform = "CorrectParams" in "tyndall::techniques::epipolar_sampling::correct", checked by correct_params_is_laid_out_as_in_wgsl {
+        pub(crate) list: u32,
+        pub(crate) downscale: u32,
+        pad: [u32; 2],
+    }
 }
 
 impl ParamsUniform {
@@ -128,121 +117,42 @@ pub(crate) struct Programs {
     view: ScreenProgram,
 }
 
-/// What a stage binds after its parameters.
-#[derive(Clone, Copy)]
-enum Slot {
-    Tree,
-    Correct,
-    Airlight,
-    Read,
-    Write,
-    Texels,
-    Picture(TextureFormat),
-}
-
-fn own(slots: &[Slot]) -> Vec<BindGroupLayoutEntry> {
-    let entry = |(binding, slot): (u32, &Slot)| match *slot {
-        Slot::Tree => layout::uniform::<TreeUniform>(binding),
-        Slot::Correct => layout::uniform::<CorrectUniform>(binding),
-        Slot::Airlight => layout::airlight(binding),
-        Slot::Read => layout::storage(binding, true),
-        Slot::Write => layout::storage(binding, false),
-        Slot::Texels => layout::texels(binding),
-        Slot::Picture(format) => layout::storage_texture(binding, format),
-    };
-    let mut entries = vec![layout::uniform::<ParamsUniform>(0)];
-    entries.extend((1..).zip(slots).map(entry));
-    entries
-}
-
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        use Slot::{Airlight, Correct, Picture, Read, Texels, Tree, Write};
-        const VALUES: Slot = Picture(TextureFormat::Rgba32Float);
-        const LIT: &[&str] = &[AIRLIGHT, STRETCH, UNSHADOWED];
-        const MARCHING: &[&str] = &[AIRLIGHT, STRETCH, UNSHADOWED, TRACE, COARSE, MARCH];
         macro_rules! program {
-            ($kind:ident, $name:literal, $modules:expr, $slots:expr) => {{
-                let mut wgsl = vec![COMMON, SCREEN, GROUP_SIZE];
-                wgsl.extend_from_slice($modules);
-                wgsl.push(include_str!(concat!($name, ".wgsl")));
-                $kind::new(device, shared, $name, &wgsl, $name, &own($slots))
-            }};
+            ($kind:ident, $name:literal) => {
+                $kind::new(
+                    device,
+                    shared,
+                    concat!("techniques::epipolar_sampling::", $name),
+                    $name,
+                )
+            };
         }
+        let finish_points = "techniques::epipolar_sampling::finish_points";
+        let tree = "techniques::epipolar_sampling::tree";
+        let view = "techniques::epipolar_sampling::view";
         Self {
-            slice_ends: program!(ComputeProgram, "slice_ends", &[], &[Write; 3]).for_all_lights(),
-            coordinates: program!(ComputeProgram, "coordinates", &[], &[Read, Write])
-                .for_all_lights(),
-            refine: program!(
-                ComputeProgram,
-                "refine",
-                LIT,
-                &[Read, Read, Write, Airlight, Write, Write, Write]
+            slice_ends: program!(ComputeProgram, "slice_ends").for_all_lights(),
+            coordinates: program!(ComputeProgram, "coordinates").for_all_lights(),
+            refine: program!(ComputeProgram, "refine"),
+            slice_directions: program!(ComputeProgram, "slice_directions"),
+            tree: ComputeProgram::new(device, shared, tree, "sampling_tree"),
+            march_samples: program!(ComputeProgram, "march_samples"),
+            correct: program!(ComputeProgram, "correct"),
+            interpolate: program!(ComputeProgram, "interpolate").for_all_lights(),
+            unwarp: program!(ComputeProgram, "unwarp").for_all_lights(),
+            upscale: program!(ComputeProgram, "upscale").for_all_lights(),
+            finish: program!(ScreenProgram, "finish"),
+            unwarp_finish: program!(ScreenProgram, "unwarp_finish"),
+            finish_points: ScreenProgram::new(device, shared, finish_points, "finish").drawing(
+                Raster {
+                    vertex: "finish_point",
+                    topology: wgpu::PrimitiveTopology::PointList,
+                    ..Raster::full_screen(shared.output.into())
+                },
             ),
-            slice_directions: program!(
-                ComputeProgram,
-                "slice_directions",
-                &[TRACE],
-                &[Read, Write]
-            ),
-            tree: program!(ComputeProgram, "tree", &[TRACE], &[Tree, Read, Write]),
-            march_samples: program!(
-                ComputeProgram,
-                "march_samples",
-                MARCHING,
-                &[Read, Read, Airlight, Read, Read, Read, Read, Write]
-            ),
-            correct: program!(
-                ComputeProgram,
-                "correct",
-                MARCHING,
-                &[Read, Read, Airlight, Correct, Read, Read, VALUES]
-            ),
-            interpolate: program!(
-                ComputeProgram,
-                "interpolate",
-                &[],
-                &[Read, Read, Read, VALUES]
-            )
-            .for_all_lights(),
-            unwarp: program!(
-                ComputeProgram,
-                "unwarp",
-                &[COARSE, FILTER],
-                &[VALUES, Write, Write, Read, Texels, Write]
-            )
-            .for_all_lights(),
-            upscale: program!(
-                ComputeProgram,
-                "upscale",
-                &[COARSE],
-                &[Texels, VALUES, Write, Write, Write]
-            )
-            .for_all_lights(),
-            finish: program!(
-                ScreenProgram,
-                "finish",
-                &[AIRLIGHT, STRETCH, UNSHADOWED, OUTPUT],
-                &[Texels, Airlight]
-            ),
-            unwarp_finish: program!(
-                ScreenProgram,
-                "unwarp_finish",
-                &[AIRLIGHT, STRETCH, UNSHADOWED, OUTPUT, FILTER],
-                &[Write, Write, Airlight, Read, Texels, Write]
-            ),
-            finish_points: program!(
-                ScreenProgram,
-                "finish",
-                &[AIRLIGHT, STRETCH, UNSHADOWED, OUTPUT, POINTS],
-                &[Texels, Airlight, Read]
-            )
-            .drawing(Raster {
-                vertex: "finish_point",
-                topology: wgpu::PrimitiveTopology::PointList,
-                ..Raster::full_screen(shared.output.into())
-            }),
-            view: program!(ScreenProgram, "view", &[], &[Texels, Read, Read]).for_all_lights(),
+            view: ScreenProgram::new(device, shared, view, "sampling_view").for_all_lights(),
         }
     }
 }
@@ -263,7 +173,6 @@ struct Resources {
     values: wgpu::Buffer,
     /// What all samples see, and their depth.
     samples: wgpu::TextureView,
-    airlight: wgpu::TextureView,
 }
 
 impl Resources {
@@ -287,7 +196,6 @@ impl Resources {
                 [sizes.samples, sizes.slices],
                 TextureFormat::Rgba32Float,
             ),
-            airlight: scope.airlight(),
         }
     }
 
@@ -380,7 +288,6 @@ fn locate(programs: &Programs, sizes: &Sizes, scope: &LightScope<'_>, r: &Resour
                 buffer(&r.lines),
                 buffer(&r.depth),
                 buffer(&r.sources),
-                view(&r.airlight),
                 buffer(&r.marched),
                 buffer(&r.counts),
                 buffer(&r.dispatches),
@@ -416,7 +323,6 @@ fn gather(
             buffer(&r.params),
             buffer(&r.traces),
             buffer(&r.nodes),
-            view(&r.airlight),
             buffer(&r.lines),
             buffer(&r.depth),
             buffer(&r.marched),
@@ -482,7 +388,6 @@ fn direct(
             buffer(&r.params),
             buffer(&list),
             buffer(&r.counts),
-            view(&r.airlight),
             buffer(&r.lines),
             view(&r.samples),
             buffer(&r.dispatches),
@@ -491,12 +396,7 @@ fn direct(
     let correction = correct(programs, scope, r, "correction", (1, 1), &list, &values);
     let points = scope.draw(
         &programs.finish_points,
-        &[
-            buffer(&r.params),
-            view(&values),
-            view(&r.airlight),
-            buffer(&list),
-        ],
+        &[buffer(&r.params), view(&values), buffer(&list)],
         scope.target.clone(),
     );
     let points = FullScreen {
@@ -524,12 +424,12 @@ fn rectangular(
         "unwarping",
         &[
             buffer(&r.params),
-            view(&coarse),
             buffer(&list),
             buffer(&r.counts),
             buffer(&r.lines),
             view(&r.samples),
             buffer(&r.dispatches),
+            view(&coarse),
         ],
         tiles(sizes.coarse),
     );
@@ -548,7 +448,7 @@ fn rectangular(
         Show::Light => scope.full_screen(
             &programs.finish,
             "phase function",
-            &[buffer(&r.params), view(&values), view(&r.airlight)],
+            &[buffer(&r.params), view(&values)],
         ),
         _ => scope.full_screen(
             &programs.view,
@@ -619,41 +519,10 @@ fn correct(
         buffer(&r.params),
         buffer(&r.traces),
         buffer(&r.nodes),
-        view(&r.airlight),
         buffer(&uniform),
         buffer(pixels),
         buffer(&r.counts),
         view(out),
     ];
     scope.compute(&programs.correct, name, &own, r.indirect(list.into()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::shader::FRAME_MODULES;
-    use tyndall_testkit::{rust_layout, shader::Shader};
-
-    #[test]
-    fn parameters_are_laid_out_as_in_wgsl() {
-        let modules = [FRAME_MODULES, &[SCREEN, COMMON]].concat();
-        let shader = Shader::new(&modules).expect("it is valid");
-        let found = shader.struct_layout("SamplingParams").expect("it is there");
-        let ours = rust_layout!(ParamsUniform {
-            epipole,
-            slices,
-            axis,
-            samples,
-            initial_step,
-            threshold,
-            criterion,
-            columns,
-            levels,
-            downscale,
-            show,
-            coarse_size,
-            arc,
-        });
-        assert_eq!(found, ours);
-    }
 }

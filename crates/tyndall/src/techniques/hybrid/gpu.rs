@@ -2,36 +2,33 @@
 
 use std::sync::Arc;
 
-use bytemuck::{Pod, Zeroable};
-
 use super::params::{Params, Show};
 use crate::{
     error::PrepareError,
     gpu::{
-        cache, layout,
+        cache,
         pass::LightPasses,
         program::ScreenProgram,
         scope::{LightScope, Shared},
-        shader::{AIRLIGHT, MARCH, STRETCH},
     },
     inputs::CountValue,
     mesh::Occluder,
-    passes::occluder::{self as volumes, Names, TILE, VolumePrograms, check_list},
-    techniques::info::Reach,
-    techniques::method::{GpuMethod, LightRequest},
+    passes::occluder::{self as volumes, Names, VolumePrograms, check_list},
+    shader::block,
+    techniques::{
+        info::Reach,
+        method::{GpuMethod, LightRequest},
+    },
 };
 
-/// The pass that writes the light.
-pub(crate) const HYBRID: &str = include_str!("hybrid.wgsl");
-
-/// `HybridParams` of `hybrid.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct ParamsUniform {
-    pub(crate) steps: u32,
-    pub(crate) bounds: u32,
-    pub(crate) show: u32,
-    pad: u32,
+block! {
+    /// The shaders' `HybridParams`.
+    pub(crate) struct ParamsUniform = "HybridParams" in "tyndall::techniques::hybrid::hybrid", checked by hybrid_params_is_laid_out_as_in_wgsl {
+        pub(crate) steps: u32,
+        pub(crate) bounds: u32,
+        pub(crate) show: u32,
+        pad: u32,
+    }
 }
 
 const NAMES: Names = Names {
@@ -57,15 +54,10 @@ pub(crate) struct Programs {
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let own = [
-            layout::uniform::<ParamsUniform>(0),
-            layout::storage(1, true),
-            layout::airlight(2),
-        ];
-        let modules = [AIRLIGHT, STRETCH, MARCH, TILE, HYBRID];
+        let module = "techniques::hybrid::hybrid";
         Self {
             volumes: shared.programs(device),
-            hybrid: ScreenProgram::new(device, shared, "hybrid", &modules, "hybrid", &own),
+            hybrid: ScreenProgram::new(device, shared, module, "hybrid"),
         }
     }
 }
@@ -118,12 +110,7 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
             tiles
         }
     };
-    let airlight = scope.airlight();
-    let resources = [
-        uniform.as_entire_binding(),
-        bounds.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&airlight),
-    ];
+    let resources = [uniform.as_entire_binding(), bounds.as_entire_binding()];
     LightPasses {
         before: passes,
         last: scope.full_screen(&programs.hybrid, "hybrid", &resources),

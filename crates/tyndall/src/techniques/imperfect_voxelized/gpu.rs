@@ -2,7 +2,6 @@
 
 use std::sync::{Arc, OnceLock};
 
-use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
 use super::{
@@ -17,7 +16,7 @@ use crate::{
     error::PrepareError,
     frame::Medium,
     gpu::{
-        cache, layout,
+        cache,
         pass::{LightPasses, Pass},
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
@@ -25,37 +24,31 @@ use crate::{
     inputs::{CountValue, LightInputs},
     light::LightSource,
     passes::{
-        epipolar::{EPIPOLAR, EpipolarUniform},
+        epipolar::EpipolarUniform,
         fill::Fill,
-        imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
-        voxels::gpu::{self as voxels, Scan, VOXELS},
+        imperfect::gpu::{self as imperfect, AreaLight, Maps},
+        voxels::gpu::{self as voxels, Scan},
     },
+    shader::block,
     techniques::method::{GpuMethod, LightRequest},
 };
-
-const RECTIFY: &str = include_str!("rectify.wgsl");
-pub(super) const PARAMS: &str = include_str!("params.wgsl");
-pub(super) const SAMPLES: &str = include_str!("samples.wgsl");
-const GATHER: &str = include_str!("gather.wgsl");
-pub(super) const FILTER: &str = include_str!("filter.wgsl");
-const RESOLVE: &str = include_str!("resolve.wgsl");
 
 /// Light rays that a workgroup of `rectify.wgsl` takes.
 const RAYS_A_WORKGROUP: u32 = 64 * 32;
 /// Pixels that a workgroup of `gather.wgsl` takes.
 const TILE: [u32; 2] = [8, 16];
 
-/// `IvsvParams` of `params.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(super) struct ParamsUniform {
-    pub(super) size: [u32; 2],
-    pitch: u32,
-    turns: u32,
-    weighting: u32,
-    taps: u32,
-    spread: u32,
-    pad: u32,
+block! {
+    /// The shaders' `IvsvParams`.
+    pub(super) struct ParamsUniform = "IvsvParams" in "tyndall::techniques::imperfect_voxelized::params", checked by ivsv_params_is_laid_out_as_in_wgsl {
+        pub(super) size: [u32; 2],
+        pitch: u32,
+        turns: u32,
+        weighting: u32,
+        taps: u32,
+        spread: u32,
+        pad: u32,
+    }
 }
 
 impl ParamsUniform {
@@ -105,23 +98,23 @@ pub(crate) struct Programs {
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let batch = layout::uniform::<BatchUniform>(0);
-        let read = |binding| layout::storage(binding, true);
-        let compute = |label, modules: &[&str], entry_point, own: &[_]| {
-            ComputeProgram::new(device, shared, label, modules, entry_point, own)
-        };
-        let own = [batch, read(1), read(2), read(3), layout::storage(4, false)];
-        let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, RECTIFY];
-        let rectify = compute("rectify", &modules, "rectify", &own);
-        let own = [batch, layout::uniform::<ParamsUniform>(1), read(2)];
-        let modules = [IMPERFECT, PARAMS, FILTER, RESOLVE];
         Self {
             maps: shared.programs(device),
             fill: shared.programs(device),
             scan: shared.programs(device),
-            rectify,
+            rectify: ComputeProgram::new(
+                device,
+                shared,
+                "techniques::imperfect_voxelized::rectify",
+                "ivsv_rectify",
+            ),
             gather: Default::default(),
-            resolve: ScreenProgram::new(device, shared, "resolve", &modules, "ivsv_resolve", &own),
+            resolve: ScreenProgram::new(
+                device,
+                shared,
+                "techniques::imperfect_voxelized::resolve",
+                "ivsv_resolve",
+            ),
             surface: OnceLock::new(),
         }
     }
@@ -131,9 +124,8 @@ impl Programs {
     fn gather(&self, device: &wgpu::Device, shared: &Shared, components: usize) -> &ComputeProgram {
         let components = components.min(Medium::MAX_COMPONENTS);
         let make = || {
-            let own = batch_entries(&[layout::storage(7, false)]);
-            let modules = [EPIPOLAR, IMPERFECT, LOOKUP, VOXELS, PARAMS, SAMPLES, GATHER];
-            ComputeProgram::new(device, shared, "gather", &modules, "ivsv_gather", &own)
+            let module = "techniques::imperfect_voxelized::gather";
+            ComputeProgram::new(device, shared, module, "ivsv_gather")
                 .with("MEDIUM_COMPONENTS", components as f64)
         };
         self.gather[components].get_or_init(make)
@@ -149,17 +141,9 @@ pub(super) struct Buffers {
     sums: wgpu::Buffer,
 }
 
-/// The bindings of a pass over the samples of a batch: those of `samples.wgsl`, and the pass's own.
-pub(super) fn batch_entries(own: &[wgpu::BindGroupLayoutEntry]) -> Vec<wgpu::BindGroupLayoutEntry> {
-    let batch = layout::uniform::<BatchUniform>(0);
-    let params = layout::uniform::<ParamsUniform>(6);
-    let read = (1..6).map(|binding| layout::storage(binding, true));
-    let shared = std::iter::once(batch).chain(read).chain([params]);
-    shared.chain(own.iter().copied()).collect()
-}
-
 impl Buffers {
-    /// The resources of a pass over the samples of a batch, as in [`batch_entries`].
+    /// The resources of a pass over the samples of a batch, by their bindings in `bindings.wesl` and `samples.wesl`, and
+    /// the pass's own from 7 on.
     pub(super) fn of_batch<'a, const N: usize>(
         &'a self,
         index: u32,
@@ -168,10 +152,10 @@ impl Buffers {
         let shared = [
             self.light.batches.binding(index),
             self.light.samples.as_entire_binding(),
-            self.grids.as_entire_binding(),
             self.light.maps.as_entire_binding(),
-            self.voxels.as_entire_binding(),
             self.light.colors.as_entire_binding(),
+            self.grids.as_entire_binding(),
+            self.voxels.as_entire_binding(),
             self.params.as_entire_binding(),
         ];
         shared.into_iter().chain(own).collect()
@@ -237,11 +221,7 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
         passes.push(pass);
         visibility
     });
-    let resources = [
-        buffers.light.batches.binding(0),
-        buffers.params.as_entire_binding(),
-        buffers.sums.as_entire_binding(),
-    ];
+    let resources = buffers.of_batch(0, [buffers.sums.as_entire_binding()]);
     let last = scope.full_screen(&programs.resolve, "resolve", &resources);
     count(scope, &passes, &last, u64::from(samples));
     LightPasses {
@@ -264,13 +244,7 @@ fn voxelize(
     let clear = programs
         .fill
         .dispatch(scope, "no voxel", &buffers.voxels, 0);
-    let resources = [
-        buffers.light.batches.binding(index),
-        buffers.light.samples.as_entire_binding(),
-        buffers.grids.as_entire_binding(),
-        buffers.light.maps.as_entire_binding(),
-        buffers.voxels.as_entire_binding(),
-    ];
+    let resources = buffers.of_batch(index, []);
     let groups = [side * side / RAYS_A_WORKGROUP, 1, count];
     let rectify = scope.dispatch(&programs.rectify, &resources, groups);
     [

@@ -2,7 +2,6 @@
 
 use std::num::NonZeroU64;
 
-use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 
 use super::{
@@ -14,41 +13,29 @@ use crate::{
     error::PrepareError,
     frame::ShadowProjection,
     gpu::{
-        cache, layout,
+        cache,
         pass::{LightPasses, Pass, Vertices, Work},
         program::{ComputeProgram, Raster, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
-        shader::{AIRLIGHT, STRETCH},
     },
     inputs::CountValue,
+    shader::block,
     techniques::method::{GpuMethod, LightRequest},
 };
 
-pub(crate) const CUBE: &str = include_str!("cube.wgsl");
-pub(crate) const MESH: &str = include_str!("mesh.wgsl");
-const SURFACE: &str = include_str!("surface.wgsl");
-pub(crate) const SPLITS: &str = include_str!("splits.wgsl");
-const SPLIT: &str = include_str!("split.wgsl");
-pub(crate) const GROW: &str = include_str!("grow.wgsl");
-const LIST: &str = include_str!("list.wgsl");
-const PANES: &str = include_str!("panes.wgsl");
-const GLASS: &str = include_str!("glass.wgsl");
-const RESOLVE: &str = include_str!("resolve.wgsl");
-const AIRLIGHT_TABLE: &str = "@group(2) @binding(1) var airlight_table: texture_2d_array<f32>;";
-
-/// `LightVolumeParams` of `mesh.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct ParamsUniform {
-    pub(crate) world_from_clip: [[f32; 4]; 4],
-    pub(crate) far_plane: [f32; 4],
-    pub(crate) cells: [u32; 2],
-    pub(crate) pitch: u32,
-    pub(crate) rows: u32,
-    pub(crate) tolerance: f32,
-    pub(crate) capacity: u32,
-    pub(crate) mirrored: u32,
-    pub(crate) pad: u32,
+block! {
+    /// The shaders' `LightVolumeParams`.
+    pub(crate) struct ParamsUniform = "LightVolumeParams" in "tyndall::techniques::light_volume::mesh", checked by light_volume_params_is_laid_out_as_in_wgsl {
+        pub(crate) world_from_clip: [[f32; 4]; 4],
+        pub(crate) far_plane: [f32; 4],
+        pub(crate) cells: [u32; 2],
+        pub(crate) pitch: u32,
+        pub(crate) rows: u32,
+        pub(crate) tolerance: f32,
+        pub(crate) capacity: u32,
+        pub(crate) mirrored: u32,
+        pub(crate) pad: u32,
+    }
 }
 
 /// The technique's shaders.
@@ -69,7 +56,7 @@ pub(crate) struct Programs {
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let sum = sum_format(device.features());
-        let surface = |label, vertex, topology| {
+        let surface = |vertex, topology| {
             let raster = Raster {
                 vertex,
                 topology,
@@ -80,66 +67,27 @@ impl cache::Programs for Programs {
                 },
                 stencil: Stencil::Absent,
             };
-            let wgsl = [AIRLIGHT, AIRLIGHT_TABLE, STRETCH, CUBE, MESH, SURFACE];
-            let own = [
-                layout::uniform::<ParamsUniform>(0),
-                layout::airlight(1),
-                layout::storage(2, true),
-            ];
-            // Only the adaptive mesh has a list.
-            let own = &own[..if vertex == LEAF { 3 } else { 2 }];
-            ScreenProgram::new(device, shared, label, &wgsl, "light_volume_surface", own)
-                .drawing(raster)
+            let module = "techniques::light_volume::surface";
+            ScreenProgram::new(device, shared, module, "light_volume_surface").drawing(raster)
         };
-        let compute = |label, wgsl, entry_point, own: &[wgpu::BindGroupLayoutEntry]| {
-            let params_and_splits = [
-                layout::uniform::<ParamsUniform>(0),
-                layout::storage(1, false),
-            ];
-            let own = [&params_and_splits, own].concat();
-            ComputeProgram::new(
-                device,
-                shared,
-                label,
-                &[CUBE, MESH, SPLITS, wgsl],
-                entry_point,
-                &own,
-            )
-        };
-        let list = [layout::storage(2, false), layout::storage(3, false)];
+        let compute =
+            |module, entry_point| ComputeProgram::new(device, shared, module, entry_point);
+        let list = "techniques::light_volume::list";
         use wgpu::PrimitiveTopology::{TriangleList, TriangleStrip};
         Self {
-            split: compute("light volume split", SPLIT, "light_volume_split", &[]),
-            grow: compute(
-                "light volume grow",
-                GROW,
-                "light_volume_grow",
-                &[layout::uniform::<Step>(2)],
-            ),
-            list: compute("light volume list", LIST, "light_volume_list", &list),
-            choose: compute("light volume choose", LIST, "light_volume_choose", &list),
-            leaf: surface("light volume leaf", LEAF, TriangleList),
-            strip: surface("light volume strip", "light_volume_strip", TriangleStrip),
-            side: surface("light volume side", "light_volume_side", TriangleList),
-            panes: ComputeProgram::new(
-                device,
-                shared,
-                "light volume panes",
-                &[PANES],
-                "light_volume_find_panes",
-                &[layout::storage(0, false)],
-            ),
+            split: compute("techniques::light_volume::split", "light_volume_split"),
+            grow: compute("techniques::light_volume::grow", "light_volume_grow"),
+            list: compute(list, "light_volume_list"),
+            choose: compute(list, "light_volume_choose"),
+            leaf: surface(LEAF, TriangleList),
+            strip: surface("light_volume_strip", TriangleStrip),
+            side: surface("light_volume_side", TriangleList),
+            panes: compute("techniques::light_volume::panes", "light_volume_find_panes"),
             resolve: ScreenProgram::new(
                 device,
                 shared,
-                "light volume resolve",
-                &[AIRLIGHT, AIRLIGHT_TABLE, STRETCH, CUBE, GLASS, RESOLVE],
+                "techniques::light_volume::resolve",
                 "light_volume_resolve",
-                &[
-                    layout::texels(0),
-                    layout::airlight(1),
-                    layout::storage(2, true),
-                ],
             ),
             sum,
         }
@@ -184,7 +132,6 @@ impl GpuMethod for Params {
 fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     let programs = scope.programs::<Programs>();
     let programs = programs.as_ref();
-    let airlight = scope.airlight();
     let mut passes = Vec::new();
     let mut sum = scope.shared.absent.light.clone();
     if let Some(extent) = extent(scope) {
@@ -199,12 +146,11 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
         if let Some(tree) = mesh.tree.as_ref().filter(|_| !mesh.is_kept) {
             passes.push(mesh.tessellate(tree, programs, scope));
         }
-        passes.push(mesh.draw(programs, scope, &airlight, &sum));
+        passes.push(mesh.draw(programs, scope, &sum));
     }
     let panes = panes(programs, scope, &mut passes);
     let resources = [
         wgpu::BindingResource::TextureView(&sum),
-        wgpu::BindingResource::TextureView(&airlight),
         panes.as_entire_binding(),
     ];
     let last = scope.full_screen(&programs.resolve, "light volume resolve", &resources);
@@ -399,17 +345,8 @@ impl Mesh {
     }
 
     /// The pass that sums up the jumps of visibility.
-    fn draw(
-        &self,
-        programs: &Programs,
-        scope: &LightScope<'_>,
-        airlight: &wgpu::TextureView,
-        sum: &wgpu::TextureView,
-    ) -> Pass {
-        let own = [
-            self.params.as_entire_binding(),
-            wgpu::BindingResource::TextureView(airlight),
-        ];
+    fn draw(&self, programs: &Programs, scope: &LightScope<'_>, sum: &wgpu::TextureView) -> Pass {
+        let own = [self.params.as_entire_binding()];
         let [columns, rows] = self.extent.cells;
         let mut draws = match &self.tree {
             None => {
@@ -421,7 +358,7 @@ impl Mesh {
             }
             Some(tree) => {
                 let list = tree.triangles.as_entire_binding();
-                let leaf = [own[0].clone(), own[1].clone(), list];
+                let leaf = [own[0].clone(), list];
                 let arguments = |offset| Vertices::Indirect(tree.counts.clone(), offset);
                 vec![
                     scope.draw_mesh(&programs.leaf, &leaf, arguments(0)),

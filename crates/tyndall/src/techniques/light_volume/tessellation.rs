@@ -13,19 +13,20 @@
 //! The grid has one cell more than the map has texels; it takes the top left part of the square. No triangle lies across
 //! its border, for all of that is split, and those beyond it are left out.
 
-use bytemuck::{Pod, Zeroable};
+use crate::shader::block;
 
 /// Vertices that one word of the bits stands for.
 pub(super) const WORD: u32 = 32;
 
-/// `LightVolumeStep` of `grow.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-pub(crate) struct Step {
-    /// Of the vertices that are looked at: odd multiples of it in one direction or both.
-    pub(crate) spacing: u32,
-    /// 1: in one direction.
-    pub(crate) is_edge: u32,
+block! {
+    /// The shaders' `LightVolumeStep`.
+    #[derive(PartialEq, Eq)]
+    pub(crate) struct Step = "LightVolumeStep" in "tyndall::techniques::light_volume::grow", checked by light_volume_step_is_laid_out_as_in_wgsl {
+        /// Of the vertices that are looked at: odd multiples of it in one direction or both.
+        pub(crate) spacing: u32,
+        /// 1: in one direction.
+        pub(crate) is_edge: u32,
+    }
 }
 
 /// The square of a face and its bits.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 
 use super::{
     params::{INFO, Integrator, Params, Show},
@@ -13,52 +13,41 @@ use crate::{
     error::PrepareError,
     frame::{Emitter, Light},
     gpu::{
-        cache, layout, limits,
+        cache, limits,
         pass::{LightPasses, Pass},
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
-        shader::{AIRLIGHT, STRETCH},
     },
     inputs::LightInputs,
     passes::{
-        epipolar::{EPIPOLAR, EpipolarUniform, with_scene},
-        pyramid::{self, PYRAMID, Source},
+        epipolar::{EpipolarUniform, with_scene},
+        pyramid::{self, Source},
     },
     physics::medium::Optics,
-    techniques::Reach,
-    techniques::method::{GpuMethod, LightRequest},
+    shader::block,
+    techniques::{
+        Reach,
+        method::{GpuMethod, LightRequest},
+    },
 };
-
-pub(crate) const TREE: &str = include_str!("tree.wgsl");
-pub(crate) const RECTIFY: &str = include_str!("rectify.wgsl");
-const SHOW: &str = include_str!("show.wgsl");
-const TRAVERSE: &str = include_str!("traverse.wgsl");
-const WALK: &str = include_str!("../../shadow/walk.wgsl");
 
 /// Leaves that a workgroup of `rectify.wgsl` takes.
 const LEAVES_A_WORKGROUP: u32 = 512;
-
-const TINT: &str = include_str!("tint.wgsl");
-const TINT_ROWS: &str = include_str!("tint_rows.wgsl");
-const TINT_MEAN: &str = include_str!("tint_mean.wgsl");
-const SVD: &str = include_str!("svd.wgsl");
-const SVD_STRETCH: &str = include_str!("svd_stretch.wgsl");
-const GLASS: &str = include_str!("glass.wgsl");
 
 /// Columns of tints a slice: those of the svd integrator, whose rows are as many as its terms (Chen 2011, section 4.3),
 /// and the least of the analytic one, for a coarse shadow map may go with a fine picture.
 const TINT_COLUMNS: usize = 512;
 
-/// `Svd` of `svd.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct SvdUniform {
-    pub(crate) beta_start: f32,
-    pub(crate) beta_step: f32,
-    pub(crate) gamma_start: f32,
-    pub(crate) gamma_step: f32,
-    pub(crate) rank: u32,
-    pad: [u32; 3],
+block! {
+    /// The shaders' `Svd`.
+    pub(crate) struct SvdUniform = "Svd" in "tyndall::techniques::min_max::svd", checked by svd_is_laid_out_as_in_wgsl {
+        pub(crate) beta_start: f32,
+        pub(crate) beta_step: f32,
+        pub(crate) gamma_start: f32,
+        pub(crate) gamma_step: f32,
+        pub(crate) rank: u32,
+        pad: [u32; 3],
+    }
 }
 
 /// The technique's shaders.
@@ -75,58 +64,25 @@ pub(crate) struct Programs {
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let rectify = || {
-            let own = [
-                layout::uniform::<EpipolarUniform>(0),
-                layout::texel_layers(1),
-                layout::storage(2, false),
-            ];
-            let modules = [EPIPOLAR, PYRAMID, TREE, RECTIFY];
-            ComputeProgram::new(device, shared, "rectify", &modules, "rectify", &own)
+            let module = "techniques::min_max::rectify";
+            ComputeProgram::new(device, shared, module, "min_max_rectify")
         };
         let tint_rows = || {
-            let own = [
-                layout::uniform::<EpipolarUniform>(0),
-                layout::uniform::<SvdUniform>(1),
-                layout::storage(2, true),
-                layout::storage(3, false),
-            ];
-            let modules = [EPIPOLAR, SVD, TINT, TINT_ROWS];
-            ComputeProgram::new(device, shared, "tint rows", &modules, "tint_rows", &own)
+            let module = "techniques::min_max::tint_rows";
+            ComputeProgram::new(device, shared, module, "tint_rows")
         };
-        let own = [
-            layout::uniform::<EpipolarUniform>(0),
-            layout::storage(1, true),
-            layout::airlight(2),
-            layout::storage(3, true),
-            layout::storage(4, true),
-            layout::uniform::<SvdUniform>(5),
-            layout::storage(6, true),
-        ];
-        let traversal: &[&str] = &[
-            AIRLIGHT,
-            STRETCH,
-            EPIPOLAR,
-            WALK,
-            TREE,
-            SVD,
-            TINT,
-            TINT_MEAN,
-            SVD_STRETCH,
-            GLASS,
-        ];
         let traverse = || {
-            let modules = [traversal, &[TRAVERSE]].concat();
-            ScreenProgram::new(device, shared, "traverse", &modules, "traverse", &own)
+            let module = "techniques::min_max::traverse";
+            ScreenProgram::new(device, shared, module, "traverse")
         };
-        let show = [traversal, &[TRAVERSE, SHOW]].concat();
-        let show_own = [&own[..], &[layout::uniform::<[u32; 4]>(7)]].concat();
+        let show = "techniques::min_max::show";
         Self {
             pyramid: shared.programs(device),
             rectify: rectify(),
             rectify_glass: rectify().with("RECTIFY_GLASS", 1.0),
             tint_rows: [0.0, 1.0].map(|svd| tint_rows().with("SVD", svd)),
             traverse: [0.0, 1.0].map(|svd| traverse().with("SVD", svd)),
-            show: ScreenProgram::new(device, shared, "show", &show, "show", &show_own),
+            show: ScreenProgram::new(device, shared, show, "min_max_show"),
         }
     }
 }
@@ -184,16 +140,15 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
             passes.push(scope.compute(program, "sum up picture", &resources, groups));
         }
     }
-    let airlight = scope.airlight();
     let resources = [
-        uniform.as_entire_binding(),
-        nodes.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&airlight),
-        tint_sums.as_entire_binding(),
-        glass_nodes.as_entire_binding(),
-        svd.as_entire_binding(),
-        svd_factors.as_entire_binding(),
-    ];
+        &uniform,
+        &svd,
+        &svd_factors,
+        &nodes,
+        &tint_sums,
+        &glass_nodes,
+    ]
+    .map(|buffer| buffer.as_entire_binding());
     let last = if params.show == Show::Light {
         let program = &programs.traverse[usize::from(is_svd)];
         scope.full_screen(program, "traverse", &resources)

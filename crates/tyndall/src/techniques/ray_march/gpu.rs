@@ -3,29 +3,23 @@
 
 use std::sync::Arc;
 
-use bytemuck::{Pod, Zeroable};
-
 use super::params::{INFO, Params, Spacing};
 use crate::{
     error::PrepareError,
     frame::Emitter,
     gpu::{
-        cache, layout,
+        cache,
         pass::LightPasses,
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
-        shader::MARCH,
     },
-    passes::imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
-    techniques::info::Reach,
-    techniques::method::{GpuMethod, LightRequest},
+    passes::imperfect::gpu::{self as imperfect, AreaLight, Maps},
+    shader::block,
+    techniques::{
+        info::Reach,
+        method::{GpuMethod, LightRequest},
+    },
 };
-
-/// What a step reads.
-pub(crate) const PARAMS: &str = include_str!("params.wgsl");
-const RAY_MARCH: &str = include_str!("ray_march.wgsl");
-const AREA: &str = include_str!("area.wgsl");
-const AREA_RESOLVE: &str = include_str!("area_resolve.wgsl");
 
 /// Pixels a side that a workgroup of `area.wgsl` takes.
 const TILE: u32 = 8;
@@ -34,13 +28,13 @@ const TILE: u32 = 8;
 /// lavapipe without a word after 65535 turns of all loops, of which a step takes some.
 const MOST_STEPS: u32 = 16_384;
 
-/// `RayMarchParams` of `params.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct ParamsUniform {
-    pub(crate) steps: u32,
-    pub(crate) spacing: u32,
-    pad: [u32; 2],
+block! {
+    /// The shaders' `RayMarchParams`.
+    pub(crate) struct ParamsUniform = "RayMarchParams" in "tyndall::techniques::ray_march::params", checked by ray_march_params_is_laid_out_as_in_wgsl {
+        pub(crate) steps: u32,
+        pub(crate) spacing: u32,
+        pad: [u32; 2],
+    }
 }
 
 impl ParamsUniform {
@@ -66,35 +60,26 @@ pub(crate) struct Programs {
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let modules = [MARCH, PARAMS, RAY_MARCH];
-        let own = [layout::uniform::<ParamsUniform>(0)];
-        let march = ScreenProgram::new(device, shared, "ray march", &modules, "ray_march", &own);
-        let modules = [PARAMS, IMPERFECT, LOOKUP, AREA];
-        let own = [
-            layout::uniform::<BatchUniform>(0),
-            layout::storage(1, true),
-            layout::storage(2, true),
-            layout::storage(3, true),
-            layout::uniform::<ParamsUniform>(4),
-            layout::storage(5, false),
-        ];
-        let march_area =
-            ComputeProgram::new(device, shared, "march", &modules, "ray_march_area", &own);
-        let modules = [AREA_RESOLVE];
-        let own = [layout::storage(0, true)];
-        let resolve = ScreenProgram::new(
-            device,
-            shared,
-            "resolve",
-            &modules,
-            "ray_march_resolve",
-            &own,
-        );
         Self {
-            march,
+            march: ScreenProgram::new(
+                device,
+                shared,
+                "techniques::ray_march::ray_march",
+                "ray_march",
+            ),
             maps: shared.programs(device),
-            march_area,
-            resolve,
+            march_area: ComputeProgram::new(
+                device,
+                shared,
+                "techniques::ray_march::area",
+                "ray_march_area",
+            ),
+            resolve: ScreenProgram::new(
+                device,
+                shared,
+                "techniques::ray_march::area_resolve",
+                "ray_march_resolve",
+            ),
         }
     }
 }

@@ -7,23 +7,18 @@ use crate::{
     epipolar::{Resolution, grid::EpipolarGrid},
     error::PrepareError,
     gpu::{
-        cache, layout, limits,
+        cache, limits,
         pass::{LightPasses, Pass},
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
-        shader::{AIRLIGHT, STRETCH},
     },
     passes::{
-        epipolar::{EPIPOLAR, EpipolarUniform, with_scene},
+        epipolar::{EpipolarUniform, with_scene},
         fill::Fill,
-        voxels::gpu::{self as voxels, RUNS, Scan, VOXELS},
+        voxels::gpu::{self as voxels, Scan},
     },
     techniques::method::{GpuMethod, LightRequest},
 };
-
-const LIGHT_RAY: &str = include_str!("light_ray.wgsl");
-const VOXELIZE: &str = include_str!("voxelize.wgsl");
-const GATHER: &str = include_str!("gather.wgsl");
 
 /// Light rays that a workgroup of `voxelize.wgsl` takes.
 const RAYS_A_WORKGROUP: u32 = 64;
@@ -38,23 +33,16 @@ pub(crate) struct Programs {
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let own = [
-            layout::uniform::<EpipolarUniform>(0),
-            layout::storage(1, false),
-        ];
-        let modules = [EPIPOLAR, VOXELS, LIGHT_RAY, VOXELIZE];
-        let voxelize = ComputeProgram::new(device, shared, "voxelize", &modules, "voxelize", &own);
-        let own = [
-            layout::uniform::<EpipolarUniform>(0),
-            layout::storage(1, true),
-            layout::airlight(2),
-        ];
-        let modules = [AIRLIGHT, STRETCH, EPIPOLAR, VOXELS, RUNS, LIGHT_RAY, GATHER];
         Self {
             fill: shared.programs(device),
             scan: shared.programs(device),
-            voxelize,
-            gather: ScreenProgram::new(device, shared, "gather", &modules, "gather", &own),
+            voxelize: ComputeProgram::new(
+                device,
+                shared,
+                "techniques::voxelized::voxelize",
+                "voxelize",
+            ),
+            gather: ScreenProgram::new(device, shared, "techniques::voxelized::gather", "gather"),
         }
     }
 }
@@ -96,12 +84,7 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
         ));
         passes.push(programs.scan.pass(scope, side, &bits, 1));
     }
-    let airlight = scope.airlight();
-    let resources = [
-        uniform.as_entire_binding(),
-        bits.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&airlight),
-    ];
+    let resources = [uniform.as_entire_binding(), bits.as_entire_binding()];
     LightPasses::new(
         passes,
         scope.full_screen(&programs.gather, "gather", &resources),

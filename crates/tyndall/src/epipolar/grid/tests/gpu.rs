@@ -10,16 +10,10 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 use super::*;
 use crate::{
     frame::{Frame, Medium},
-    gpu::{
-        shader::{CHOICE, CHOICE_ALONE, FRAME_MODULES, LIGHT_MODULES},
-        uniforms::{FrameUniform, LightUniform, LightVariant},
-    },
-    passes::{
-        epipolar::{EPIPOLAR, EpipolarUniform},
-        pyramid::PYRAMID,
-    },
+    gpu::uniforms::{FrameUniform, LightUniform, LightVariant},
+    passes::epipolar::EpipolarUniform,
+    shader::tests::{harness, in_one_group},
     shadow::depths::DepthRanges,
-    techniques::min_max::gpu::{RECTIFY, TREE},
 };
 
 /// A case's uniform blocks.
@@ -57,44 +51,22 @@ impl Blocks {
         }
     }
 
-    /// Modules as the harness can bind them, all in group 0 and made for one kind of light.
-    fn modules(&self, own: &[&str]) -> Vec<String> {
+    /// The test's own text as the harness can bind it, all in group 0 and made for one kind of light.
+    fn module(&self, own: &str) -> String {
         let LightVariant { kind, shadow, .. } = self.variant;
-        let constant = |name: &str, value: u32| {
-            (
-                format!("{name}: u32 = 0u"),
-                format!("{name}: u32 = {value}u"),
-            )
-        };
-        let constants = [
-            constant("LIGHT_KIND", kind),
-            constant("SHADOW_KIND", shadow),
-        ];
-        let in_group_0 = |module: &&str| {
-            let mut module = module.replace(CHOICE, CHOICE_ALONE);
-            for group in [1, 2] {
-                let from = format!("@group({group}) @binding(");
-                module = module.replace(&from, &format!("@group(0) @binding({group}"));
-            }
-            for (from, to) in &constants {
-                module = module.replace(from, to);
-            }
-            module
-        };
-        let modules = [FRAME_MODULES, LIGHT_MODULES, &[EPIPOLAR], own].concat();
-        modules.iter().map(in_group_0).collect()
+        let overrides = [("LIGHT_KIND", kind), ("SHADOW_KIND", shadow)];
+        in_one_group(&harness(own, &[], &overrides))
     }
 
     fn evaluate<const N: usize>(
         &self,
         gpu: &TestDevice,
-        own: &[&str],
+        own: &str,
         textures: &[(u32, &wgpu::TextureView)],
         expression: &str,
         inputs: &[[f32; N]],
     ) -> Vec<[f32; 4]> {
-        let modules = self.modules(own);
-        let modules: Vec<&str> = modules.iter().map(String::as_str).collect();
+        let module = self.module(own);
         let buffers = [(0, &self.frame), (10, &self.light), (20, &self.grid)];
         let buffers = buffers.map(|(binding, buffer)| wgpu::BindGroupEntry {
             binding,
@@ -105,25 +77,30 @@ impl Blocks {
             resource: wgpu::BindingResource::TextureView(view),
         });
         let bindings: Vec<_> = buffers.into_iter().chain(textures).collect();
-        wgsl::evaluate_with(gpu, &modules, &bindings, expression, inputs).expect("the shader runs")
+        wgsl::evaluate_with(gpu, &[&module], &bindings, expression, inputs)
+            .expect("the shader runs")
     }
 }
 
 /// Ray (x, y), share of its length, sample, and the ends of a light ray.
 const TWINS: &str = "
-@group(2) @binding(0) var<uniform> grid: Epipolar;
+import tyndall::camera::camera::camera_ray;
+import tyndall::light::light::light;
+import tyndall::passes::epipolar::epipolar::{
+    epipolar, epipolar_crossing, epipolar_gamma, epipolar_ray, epipolar_shadow_range, epipolar_slice};
+import tyndall::shadow::shadow::shadow_map;
 fn twins_ray(x: array<f32, 5>) -> vec4f {
     let used = light.cube_depth.x;
     let ray = camera_ray(vec2f(x[0], x[1]), 0.0);
-    let r = epipolar_ray(grid, ray);
-    let sample = (epipolar_gamma(r, x[2] * ray.length) - grid.gamma_start) / grid.gamma_step;
-    let crossing = epipolar_crossing(r, grid.gamma_start + floor(sample) * grid.gamma_step);
-    return vec4f(f32(epipolar_slice(grid, r)), r.b, sample, crossing / ray.length + 0.0 * used);
+    let r = epipolar_ray(epipolar, ray);
+    let sample = (epipolar_gamma(r, x[2] * ray.length) - epipolar.gamma_start) / epipolar.gamma_step;
+    let crossing = epipolar_crossing(r, epipolar.gamma_start + floor(sample) * epipolar.gamma_step);
+    return vec4f(f32(epipolar_slice(epipolar, r)), r.b, sample, crossing / ray.length + 0.0 * used);
 }
 fn twins_shadow(x: array<f32, 5>) -> vec4f {
     let ray = camera_ray(vec2f(x[0], x[1]), 0.0);
-    let gamma = grid.gamma_start + (floor(x[2] * 63.0) + vec2f(0.0, 1.0)) * grid.gamma_step;
-    return vec4f(epipolar_shadow_range(grid, gamma, vec2f(20.0 * x[3], 20.0 * x[3] + 5.0 * x[4])),
+    let gamma = epipolar.gamma_start + (floor(x[2] * 63.0) + vec2f(0.0, 1.0)) * epipolar.gamma_step;
+    return vec4f(epipolar_shadow_range(epipolar, gamma, vec2f(20.0 * x[3], 20.0 * x[3] + 5.0 * x[4])),
         0.0 * (ray.length + light.cube_depth.x), 0.0);
 }";
 
@@ -139,7 +116,7 @@ fn wgsl_twin_agrees() {
         let Some(grid) = case.grid(0) else { continue };
         let blocks = Blocks::new(gpu, &case, &grid);
         let inputs: Vec<[f32; 5]> = points(i, 500).iter().map(|x| x.map(|x| x as f32)).collect();
-        let found = blocks.evaluate(gpu, &[TWINS], &[], "twins_ray(x)", &inputs);
+        let found = blocks.evaluate(gpu, TWINS, &[], "twins_ray(x)", &inputs);
         let camera = case.rays();
         for (x, found) in inputs.iter().zip(found) {
             let x = x.map(f64::from);
@@ -159,7 +136,7 @@ fn wgsl_twin_agrees() {
                     worst[3].max((crossing - exact).abs().min((crossing / exact - 1.0).abs()));
             }
         }
-        let found = blocks.evaluate(gpu, &[TWINS], &[], "twins_shadow(x)", &inputs);
+        let found = blocks.evaluate(gpu, TWINS, &[], "twins_shadow(x)", &inputs);
         for (x, found) in inputs.iter().zip(found) {
             let x = x.map(f64::from);
             let sample = (63.0 * x[2]).floor() as usize;
@@ -181,6 +158,9 @@ fn wgsl_twin_agrees() {
 }
 
 const CELL: &str = "
+import tyndall::gpu::frame::frame;
+import tyndall::passes::epipolar::epipolar::{epipolar, epipolar_outward};
+import tyndall::techniques::min_max::rectify::{rectify_cell, rectify_side};
 fn cell_of(x: array<f32, 2>, level: u32) -> vec4f {
     let e = epipolar;
     let used = frame.camera.near;
@@ -278,7 +258,7 @@ fn the_gpus_cells_hold_every_light_ray_in_them() {
             .collect();
         let found = Blocks::new(gpu, &case, &grid).evaluate(
             gpu,
-            &[PYRAMID, TREE, RECTIFY, CELL],
+            CELL,
             &[(11, &map), (12, &glass), (21, &pyramid(gpu, &shadows))],
             // As in the pass, one level for all: not every driver takes a level of each thread's own.
             &format!("cell_of(x, {}u)", i / 3 % 3),

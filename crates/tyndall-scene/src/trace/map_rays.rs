@@ -1,0 +1,123 @@
+//! The rays through the centres of a shadow map's texels, and the depths it stores along them.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::{DMat4, DVec2};
+use rayon::prelude::*;
+use tyndall::{
+    cpu::Progress,
+    frame::{Emitter, ShadowProjection},
+    shadow,
+};
+
+use crate::view::Ray;
+
+/// The rays through a shadow map's texels, from its near to its far plane.
+pub(super) struct MapRays {
+    size: [u32; 2],
+    faces: Vec<Face>,
+    reversed: bool,
+}
+
+/// A texel and the ray through its centre.
+pub(super) struct Texel {
+    pub(super) face: usize,
+    /// Index within its face, row by row.
+    pub(super) index: usize,
+    /// Starts on the near plane.
+    pub(super) ray: Ray,
+    /// Distance to the far plane [m].
+    pub(super) length: f64,
+}
+
+/// A face's projection, with depth 1 at the near plane, and its inverse.
+struct Face {
+    clip_from_world: DMat4,
+    world_from_clip: DMat4,
+}
+
+impl MapRays {
+    pub(super) fn new(emitter: &Emitter, projection: &ShadowProjection, size: [u32; 2]) -> Self {
+        let (ShadowProjection::Single { reversed_depth, .. }
+        | ShadowProjection::Cube { reversed_depth, .. }) = *projection;
+        let faces = shadow::faces(emitter, projection).unwrap_or_default();
+        Self {
+            size,
+            faces: faces
+                .iter()
+                .map(|face| Face {
+                    clip_from_world: face.clip_from_world,
+                    world_from_clip: face.clip_from_world.inverse(),
+                })
+                .collect(),
+            reversed: reversed_depth,
+        }
+    }
+
+    /// Collects what `values` gives for all texels, face by face, row by row.
+    pub(super) fn flat_map_texels<T: Send, I: IntoIterator<Item = T>>(
+        &self,
+        progress: Progress<'_>,
+        values: impl Fn(Texel) -> I + Sync,
+    ) -> Vec<T> {
+        let [width, height] = self.size.map(|n| n as usize);
+        let total = (self.faces.len() * width * height) as u64;
+        let done = AtomicU64::new(0);
+        let row_of_values = |row: usize| -> Vec<T> {
+            let first = row % height * width;
+            let texels = (first..first + width).map(|index| self.texel(row / height, index));
+            let values = texels.flat_map(&values).collect();
+            progress(
+                done.fetch_add(width as u64, Ordering::Relaxed) + width as u64,
+                total,
+            );
+            values
+        };
+        (0..self.faces.len() * height)
+            .into_par_iter()
+            .flat_map_iter(row_of_values)
+            .collect()
+    }
+
+    /// Number of faces: 1 or 6; 0 where a cube is asked for of a light that has no position.
+    pub(super) fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    fn texel(&self, face: usize, index: usize) -> Texel {
+        let (x, y) = (index % self.size[0] as usize, index / self.size[0] as usize);
+        let size = DVec2::from(self.size.map(f64::from));
+        let ndc = DVec2::new(2.0, -2.0) * ((DVec2::new(x as f64, y as f64) + 0.5) / size - 0.5);
+        let world_from_clip = self.faces[face].world_from_clip;
+        let [from, to] = [1.0, 0.0].map(|z| world_from_clip.project_point3(ndc.extend(z)));
+        let length = (to - from).length();
+        Texel {
+            face,
+            index,
+            ray: Ray {
+                origin: from,
+                direction: (to - from) / length,
+            },
+            length,
+        }
+    }
+
+    /// The depth that the map stores for a surface at a distance along a texel's ray [m].
+    pub(super) fn stored_depth(&self, texel: &Texel, distance: f64) -> f32 {
+        let clip_from_world = self.faces[texel.face].clip_from_world;
+        self.stored(clip_from_world.project_point3(texel.ray.at(distance)).z)
+    }
+
+    /// The depth that the map stores where there is no surface.
+    pub(super) fn far_value(&self) -> f32 {
+        self.stored(0.0)
+    }
+
+    fn stored(&self, near_is_one: f64) -> f32 {
+        (if self.reversed {
+            near_is_one
+        } else {
+            1.0 - near_is_one
+        }) as f32
+    }
+}
