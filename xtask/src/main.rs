@@ -3,6 +3,7 @@
 mod checks;
 mod command;
 mod driver;
+mod layers;
 mod results;
 mod tidy;
 
@@ -22,6 +23,11 @@ const CHECKS: &[Check] = &[
         name: "tidy",
         about: "sizes and kinds of files, white space",
         run: tidy::check,
+    },
+    Check {
+        name: "layers",
+        about: "imports: none against the order in ARCHITECTURE.md, none in a circle",
+        run: layers::check,
     },
     Check {
         name: "fmt",
