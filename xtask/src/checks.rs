@@ -36,6 +36,19 @@ pub(crate) fn doc() -> anyhow::Result<()> {
     )
 }
 
+/// Packs the crates that are published as they would be uploaded: fails where one needs what is not published, or its manifest
+/// lacks something. It builds nothing, because all of it was built by the other checks.
+pub(crate) fn package() -> anyhow::Result<()> {
+    let crates = [
+        "--workspace",
+        "--exclude=tyndall-testkit",
+        "--exclude=xtask",
+    ];
+    // A change is checked before it is committed.
+    let flags = ["--no-verify", "--allow-dirty", "--offline", "--quiet"];
+    cargo(&[&["package"], &crates[..], &flags].concat(), &[])
+}
+
 pub(crate) fn unit() -> anyhow::Result<()> {
     cargo(&["test", "--release", "--workspace"], &[NO_DEVICE_SELECT])
 }

@@ -45,6 +45,11 @@ const CHECKS: &[Check] = &[
         run: checks::doc,
     },
     Check {
+        name: "package",
+        about: "packages of the published crates",
+        run: checks::package,
+    },
+    Check {
         name: "driver",
         about: "a Vulkan driver for the tests; installs Mesa's software driver where it can",
         run: driver::ensure,

@@ -11,7 +11,6 @@ use tyndall::{
     techniques::{Backends, Technique},
 };
 use tyndall_scene::geometry::Bounds;
-use tyndall_testkit::samples::in_box;
 
 use super::{
     Bench, Report,
@@ -22,6 +21,7 @@ use crate::{
     measure::{Place, Stage, Visibility, ray_march},
     picture::Picture,
     progress::Stages,
+    samples::in_box,
     setup::Setup,
     shot::{Override, Shot},
 };

@@ -16,6 +16,7 @@ mod timing;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use crate::metrics::PictureError;
 pub use equal::{
     EqualQuality, MAX_STEPS, Marches, ray_march, steps_in_time, time_of_steps, timed_marches,
 };
@@ -24,4 +25,3 @@ pub use film::{Film, TakeFrame};
 pub use stage::{Place, Stage, converged};
 pub use timing::{Budget, Spread, Timing, Timings};
 pub use tyndall::techniques::reference::Visibility;
-pub use tyndall_testkit::metrics::PictureError;
