@@ -385,10 +385,7 @@ impl<'a> SurfaceShadow<'a> {
 #[cfg(test)]
 mod tests {
     use glam::{Vec2, Vec3, vec3};
-    use tyndall::{
-        frame::{Camera, Medium, MediumComponent, Phase},
-        techniques::{Technique, ray_march},
-    };
+    use tyndall::frame::{Camera, Medium, MediumComponent, Phase};
 
     use super::*;
     use crate::{
@@ -443,7 +440,6 @@ mod tests {
                     phase: Phase::Isotropic,
                 }],
             },
-            technique: Technique::RayMarch(ray_march::Params::default()),
         }
     }
 

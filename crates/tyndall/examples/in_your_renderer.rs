@@ -22,7 +22,7 @@ use tyndall::{
         Camera, DepthRange, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection,
         ShadowProjection,
     },
-    techniques::Technique,
+    techniques::TechniqueChoice,
 };
 use wgpu::util::{BufferInitDescriptor, DeviceExt, DownloadBuffer};
 
@@ -103,8 +103,14 @@ impl Haze {
                 ..LightInputs::default()
             }],
         };
-        self.effect
-            .prepare(device, queue, &mut self.view, &inputs, &frame())
+        self.effect.prepare(
+            device,
+            queue,
+            &mut self.view,
+            &inputs,
+            &frame(),
+            &TechniqueChoice::default(),
+        )
     }
 
     /// After the renderer's own passes: the effect's passes, then one draw on the picture.
@@ -161,7 +167,6 @@ fn frame() -> Frame {
                 phase: Phase::HenyeyGreenstein { g: 0.5 },
             }],
         },
-        technique: Technique::default(),
     }
 }
 

@@ -10,7 +10,7 @@ use std::{error::Error, sync::mpsc};
 use tyndall::{
     Effect, EffectOptions, FrameInputs, LightInputs, OutputPrecision,
     frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase, ShadowProjection},
-    techniques::Technique,
+    techniques::TechniqueChoice,
 };
 use wgpu::util::{DeviceExt, DownloadBuffer, TextureDataOrder};
 
@@ -44,7 +44,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let effect = Effect::new(&device, &options)?;
     let mut view = effect.create_view(&device, SIZE)?;
-    effect.prepare(&device, &queue, &mut view, &inputs, &frame())?;
+    effect.prepare(
+        &device,
+        &queue,
+        &mut view,
+        &inputs,
+        &frame(),
+        &TechniqueChoice::default(),
+    )?;
     let mut encoder = device.create_command_encoder(&Default::default());
     effect.record(&mut encoder, &mut view, None);
     queue.submit([encoder.finish()]);
@@ -100,7 +107,6 @@ fn frame() -> Frame {
                 phase: Phase::HenyeyGreenstein { g: 0.4 },
             }],
         },
-        technique: Technique::default(),
     }
 }
 

@@ -2,9 +2,7 @@
 //!
 //! World space is right-handed; lengths are metres, angles radians, colours linear RGB.
 
-use crate::techniques::Technique;
-
-/// One view of one moment: everything a technique needs besides pictures (depth, shadow maps).
+/// One view of one moment: everything a technique needs besides textures (depth, shadow maps).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Where the picture is taken from.
@@ -13,8 +11,6 @@ pub struct Frame {
     pub lights: Vec<Light>,
     /// The medium that fills all space.
     pub medium: Medium,
-    /// How the integral is computed.
-    pub technique: Technique,
 }
 
 /// A camera: eye, orientation, projection and the convention of its depth buffer.
@@ -168,6 +164,56 @@ pub enum Emitter {
         /// Number of point samples it is taken as (1 ..= 1024).
         samples: u32,
     },
+}
+
+/// A kind of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightKind {
+    /// Parallel light.
+    Directional,
+    /// A point.
+    Point,
+    /// A point with a cone.
+    Spot,
+    /// A rectangle.
+    Rect,
+}
+
+impl LightKind {
+    /// The kind of an emitter.
+    pub fn of(emitter: &Emitter) -> Self {
+        match emitter {
+            Emitter::Directional { .. } => Self::Directional,
+            Emitter::Point { .. } => Self::Point,
+            Emitter::Spot { .. } => Self::Spot,
+            Emitter::Rect { .. } => Self::Rect,
+        }
+    }
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Directional => "directional",
+            Self::Point => "point",
+            Self::Spot => "spot",
+            Self::Rect => "rect",
+        }
+    }
+}
+
+impl Light {
+    /// Its kind.
+    pub fn kind(&self) -> LightKind {
+        LightKind::of(&self.emitter)
+    }
+
+    /// Faces of its shadow map: 6 for a cube, else 1.
+    pub fn faces(&self) -> u32 {
+        match self.shadow {
+            Some(ShadowProjection::Cube { .. }) => 6,
+            _ => 1,
+        }
+    }
 }
 
 /// How a shadow map was rendered. Depth is what a depth buffer holds: clip z / clip w in [0, 1].

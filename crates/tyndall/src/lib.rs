@@ -34,7 +34,7 @@
 //! use tyndall::{
 //!     cpu::{self, CpuInputs, CpuLightInputs},
 //!     frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase},
-//!     techniques::Technique,
+//!     techniques::TechniqueChoice,
 //! };
 //!
 //! let frame = Frame {
@@ -51,7 +51,6 @@
 //!             phase: Phase::HenyeyGreenstein { g: 0.4 },
 //!         }],
 //!     },
-//!     technique: Technique::default(),
 //! };
 //! let inputs = CpuInputs {
 //!     size: [8, 4],
@@ -59,7 +58,7 @@
 //!     lights: &[CpuLightInputs::default()],
 //!     occluders: None,
 //! };
-//! let picture = cpu::render(&frame, &inputs, &|_done, _total| ())?;
+//! let picture = cpu::render(&frame, &inputs, &TechniqueChoice::default(), &|_done, _total| ())?;
 //! let [r, g, b, transmittance] = picture.pixels[0];
 //! assert!(r > 0.0 && r == g && g == b && transmittance < 1.0);
 //! # Ok::<(), tyndall::PrepareError>(())
@@ -89,8 +88,6 @@
 //! - `gpu` (default): the passes on wgpu. Without it the library needs no driver and no graphics crate.
 
 pub mod camera;
-#[cfg(feature = "gpu")]
-mod composite;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 mod effect;
@@ -99,23 +96,24 @@ mod error;
 pub mod frame;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod inputs;
+mod integrate;
 pub mod light;
 #[cfg(feature = "gpu")]
-mod occluder;
+mod mesh;
+#[cfg(feature = "gpu")]
+mod passes;
 pub mod physics;
 pub mod shadow;
 pub mod techniques;
 #[cfg(feature = "gpu")]
 pub mod temporal;
 mod validate;
-#[cfg(feature = "gpu")]
-mod voxels;
 
 #[cfg(feature = "gpu")]
-pub use effect::{
-    Count, CountValue, CreateError, Effect, EffectOptions, EffectView, FrameInputs, LightInputs,
-    OutputPrecision, PointCloud, SurfaceShadows,
-};
+pub use effect::{CreateError, Effect, EffectOptions, EffectView, OutputPrecision};
 pub use error::PrepareError;
 #[cfg(feature = "gpu")]
-pub use occluder::{Occluder, OccluderError, OccluderMesh};
+pub use inputs::{Count, CountValue, FrameInputs, LightInputs, PointCloud, SurfaceShadows};
+#[cfg(feature = "gpu")]
+pub use mesh::{Occluder, OccluderError, OccluderMesh};

@@ -11,7 +11,7 @@ use tyndall::{
     frame::{Emitter, Frame, Light, TexturePlacement},
     light::LightModel,
     physics::medium::Optics,
-    techniques::{Technique, Value},
+    techniques::{Technique, TechniqueChoice, Value},
 };
 use tyndall_testkit::{
     device::{TestDevice, device_or_skip},
@@ -158,7 +158,6 @@ fn stages(samples: u32, has_picture: bool) -> Vec<Stage> {
             camera,
             lights: vec![light(samples, has_picture)],
             medium: media[i % media.len()].1.clone(),
-            technique: Technique::default(),
         },
     };
     cameras().into_iter().enumerate().map(stage).collect()
@@ -166,17 +165,15 @@ fn stages(samples: u32, has_picture: bool) -> Vec<Stage> {
 
 fn reference(stage: &Stage, occluders: &dyn Occluders) -> Picture {
     let tolerance = ("tolerance", Value::Real(1e-3));
-    let frame = Frame {
-        technique: technique("reference", &[tolerance]),
-        ..stage.frame.clone()
-    };
+    let frame = stage.frame.clone();
+    let frame_by = TechniqueChoice::from(technique("reference", &[tolerance]));
     let inputs = CpuInputs {
         size: SIZE,
         depth: &stage.depth,
         lights: &stage.cpu_lights(),
         occluders: Some(occluders),
     };
-    let result = cpu::render(&frame, &inputs, &|_, _| {}).expect("a good stage");
+    let result = cpu::render(&frame, &inputs, &frame_by, &|_, _| {}).expect("a good stage");
     picture(&result.pixels)
 }
 
@@ -212,13 +209,11 @@ fn render_on(
         depth: &uploaded.depth,
         lights: &lights,
     };
-    let frame = Frame {
-        technique,
-        ..stage.frame.clone()
-    };
+    let frame = stage.frame.clone();
+    let frame_by = TechniqueChoice::from(technique);
     let (device, queue) = (&gpu.device, &gpu.queue);
     effect
-        .prepare(device, queue, view, &inputs, &frame)
+        .prepare(device, queue, view, &inputs, &frame, &frame_by)
         .expect("a good stage");
     let mut encoder = device.create_command_encoder(&Default::default());
     effect.record(&mut encoder, view, None);
@@ -503,11 +498,16 @@ fn surface_shadows_are_there_where_they_are_asked_for() {
         depth: &uploaded.depth,
         lights: &uploaded.light_inputs(),
     };
-    let frame = Frame {
-        technique: ivsv(&[]),
-        ..stage.frame.clone()
-    };
-    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame);
+    let frame = stage.frame.clone();
+    let frame_by = TechniqueChoice::from(ivsv(&[]));
+    let refused = effect.prepare(
+        &gpu.device,
+        &gpu.queue,
+        &mut view,
+        &inputs,
+        &frame,
+        &frame_by,
+    );
     assert_eq!(
         refused.expect_err("refused").to_string(),
         "`surface_shadows.normals` must be a texture of the view's size, found [48, 1]"
@@ -522,17 +522,15 @@ fn what_cannot_be_done_is_refused() {
     let (effect, cloud) = (on::effect(gpu), cloud(gpu));
     let stage = &stages(4, false)[0];
     let on_cpu = |name: &str| {
-        let frame = Frame {
-            technique: technique(name, &[]),
-            ..stage.frame.clone()
-        };
+        let frame = stage.frame.clone();
+        let frame_by = TechniqueChoice::from(technique(name, &[]));
         let inputs = CpuInputs {
             size: SIZE,
             depth: &stage.depth,
             lights: &stage.cpu_lights(),
             occluders: None,
         };
-        let refused = cpu::render(&frame, &inputs, &|_, _| {}).expect_err("refused");
+        let refused = cpu::render(&frame, &inputs, &frame_by, &|_, _| {}).expect_err("refused");
         refused.to_string()
     };
     assert_eq!(
@@ -553,12 +551,17 @@ fn what_cannot_be_done_is_refused() {
             depth: &uploaded.depth,
             lights: &lights,
         };
-        let frame = Frame {
-            technique,
-            ..stage.frame.clone()
-        };
+        let frame = stage.frame.clone();
+        let frame_by = TechniqueChoice::from(technique);
         let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
-        let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame);
+        let refused = effect.prepare(
+            &gpu.device,
+            &gpu.queue,
+            &mut view,
+            &inputs,
+            &frame,
+            &frame_by,
+        );
         refused.expect_err("refused").to_string()
     };
     let points = |map_side| PointCloud {

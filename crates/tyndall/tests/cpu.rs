@@ -14,7 +14,7 @@ use tyndall::{
         airlight::{AirlightTable, PointOnRay},
         transmittance::transmittance_integral,
     },
-    techniques::{Technique, Value},
+    techniques::{Technique, TechniqueChoice, Value},
 };
 use tyndall_testkit::metrics::compare;
 
@@ -28,8 +28,12 @@ fn reference() -> Technique {
     )
 }
 
-fn simple(medium: MediumComponent, emitter: Emitter, technique: Technique) -> Frame {
-    Frame {
+fn simple(
+    medium: MediumComponent,
+    emitter: Emitter,
+    technique: Technique,
+) -> (Frame, TechniqueChoice) {
+    let frame = Frame {
         camera: Camera::perspective(
             [0.0; 3],
             [0.0, 0.0, -1.0],
@@ -47,11 +51,11 @@ fn simple(medium: MediumComponent, emitter: Emitter, technique: Technique) -> Fr
         medium: Medium {
             components: vec![medium],
         },
-        technique,
-    }
+    };
+    (frame, technique.into())
 }
 
-fn render(frame: &Frame) -> Vec<[f32; 4]> {
+fn render((frame, techniques): &(Frame, TechniqueChoice)) -> Vec<[f32; 4]> {
     let depth = common::depth(true);
     let inputs = CpuInputs {
         size: SIZE,
@@ -59,7 +63,7 @@ fn render(frame: &Frame) -> Vec<[f32; 4]> {
         lights: &[Default::default()],
         occluders: None,
     };
-    cpu::render(frame, &inputs, &|_, _| {})
+    cpu::render(frame, &inputs, techniques, &|_, _| {})
         .expect("a good frame")
         .pixels
 }
@@ -88,7 +92,7 @@ fn a_slab_in_the_sun_is_the_closed_form() {
     for technique in [reference(), technique("ray-march", &[steps(2000)])] {
         let name = technique.info().name;
         let frame = simple(medium, sun, technique);
-        for (pixel, ray) in render(&frame).iter().zip(rays(&frame.camera)) {
+        for (pixel, ray) in render(&frame).iter().zip(rays(&frame.0.camera)) {
             let cos_theta = -direction.normalize().as_dvec3().dot(ray.direction);
             for channel in 0..3 {
                 let (s, a) = (
@@ -152,7 +156,13 @@ fn no_medium_scatters_nothing_and_lets_all_through() {
             lights: &lights,
             occluders: None,
         };
-        let result = cpu::render(&stage.frame, &inputs, &|_, _| {}).expect("a good frame");
+        let result = cpu::render(
+            &stage.frame,
+            &inputs,
+            &TechniqueChoice::default(),
+            &|_, _| {},
+        )
+        .expect("a good frame");
         assert!(result.pixels.iter().all(|p| *p == [0.0, 0.0, 0.0, 1.0]));
     }
 }
@@ -171,7 +181,7 @@ fn an_unshadowed_lamp_is_the_airlight_integral() {
             intensity: [1.0; 3],
         };
         let frame = simple(medium, lamp, reference());
-        for (pixel, ray) in render(&frame).iter().zip(rays(&frame.camera)) {
+        for (pixel, ray) in render(&frame).iter().zip(rays(&frame.0.camera)) {
             let light = PointOnRay::new(
                 DVec3::from(position.map(f64::from)) - ray.origin,
                 ray.direction,
@@ -317,10 +327,8 @@ fn svd_refuses_orthographic_cameras() {
     let mut stages = stages();
     stages.retain(|s| matches!(s.frame.camera.projection, Projection::Orthographic { .. }));
     for stage in stages {
-        let frame = Frame {
-            technique: svd(4),
-            ..stage.frame.clone()
-        };
+        let frame = stage.frame.clone();
+        let frame_by = TechniqueChoice::from(svd(4));
         let lights = stage.cpu_lights();
         let inputs = CpuInputs {
             size: SIZE,
@@ -328,7 +336,7 @@ fn svd_refuses_orthographic_cameras() {
             lights: &lights,
             occluders: None,
         };
-        let refused = cpu::render(&frame, &inputs, &|_, _| {}).expect_err("refused");
+        let refused = cpu::render(&frame, &inputs, &frame_by, &|_, _| {}).expect_err("refused");
         assert_eq!(
             refused.to_string(),
             "technique `min-max` cannot do the svd integrator with an orthographic camera"

@@ -10,7 +10,7 @@ use tyndall::{
     CreateError, FrameInputs,
     camera::CameraRays,
     frame::{Emitter, Projection, ShadowProjection},
-    techniques::Value,
+    techniques::{TechniqueChoice, Value},
 };
 use tyndall_testkit::{
     device::{device_or_skip, plain_device_or_skip},
@@ -310,7 +310,14 @@ fn composite_attenuates_and_adds_per_channel() {
     };
     let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
     effect
-        .prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &stage.frame)
+        .prepare(
+            &gpu.device,
+            &gpu.queue,
+            &mut view,
+            &inputs,
+            &stage.frame,
+            &TechniqueChoice::default(),
+        )
         .expect("a good stage");
     let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -391,16 +398,21 @@ fn what_cannot_be_made_is_refused() {
         .create_view(&gpu.device, [8, 8])
         .expect("a good size");
     let mut refusal = |lights: &[tyndall::LightInputs<'_>], technique| {
-        let frame = tyndall::frame::Frame {
-            technique,
-            ..stage.frame.clone()
-        };
+        let frame = stage.frame.clone();
+        let frame_by = TechniqueChoice::from(technique);
         let inputs = FrameInputs {
             depth: &uploaded.depth,
             lights,
         };
         effect
-            .prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame)
+            .prepare(
+                &gpu.device,
+                &gpu.queue,
+                &mut view,
+                &inputs,
+                &frame,
+                &frame_by,
+            )
             .expect_err("refused")
             .to_string()
     };
@@ -413,35 +425,32 @@ fn what_cannot_be_made_is_refused() {
         "technique `reference` cannot do its work on the GPU"
     );
     let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
-    let frame = tyndall::frame::Frame {
-        technique: light_volume(0.5),
-        ..stage.frame.clone()
-    };
+    let frame = stage.frame.clone();
+    let frame_by = TechniqueChoice::from(light_volume(0.5));
     let inputs = FrameInputs {
         depth: &uploaded.depth,
         lights: &lights,
     };
-    let mut flat = tyndall::frame::Frame {
-        technique: svd(4),
-        ..stage.frame.clone()
-    };
+    let mut flat = stage.frame.clone();
+    let flat_by = TechniqueChoice::from(svd(4));
     flat.camera.projection = Projection::Orthographic {
         half_extent: [4.0, 3.0],
         center: [0.0; 2],
         near: 0.5,
         far: 20.0,
     };
-    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &flat);
+    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &flat, &flat_by);
     assert_eq!(
         refused.expect_err("no eye").to_string(),
         "technique `min-max` cannot do the svd integrator with an orthographic camera"
     );
     let most = Value::Integer(16384);
-    let fine = tyndall::frame::Frame {
-        technique: technique("min-max", &[("slices", most.clone()), ("samples", most)]),
-        ..stage.frame.clone()
-    };
-    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &fine);
+    let fine = stage.frame.clone();
+    let fine_by = TechniqueChoice::from(technique(
+        "min-max",
+        &[("slices", most.clone()), ("samples", most)],
+    ));
+    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &fine, &fine_by);
     let limit = gpu.device.limits().max_storage_buffer_binding_size;
     assert_eq!(
         refused.expect_err("2 GiB of nodes").to_string(),
@@ -450,7 +459,14 @@ fn what_cannot_be_made_is_refused() {
              max_storage_buffer_binding_size, {limit}"
         )
     );
-    let refused = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame);
+    let refused = effect.prepare(
+        &gpu.device,
+        &gpu.queue,
+        &mut view,
+        &inputs,
+        &frame,
+        &frame_by,
+    );
     assert_eq!(
         refused.expect_err("a light through a picture").to_string(),
         "technique `light-volume` cannot do light textures (lights[2])"

@@ -7,8 +7,8 @@ use glam::{Affine3A, DVec3, Mat4, Quat, Vec3};
 use tyndall::{
     Effect, FrameInputs, LightInputs, Occluder, OccluderMesh,
     camera::{CameraRays, Ray},
-    frame::{Emitter, Frame},
-    techniques::{Technique, Value},
+    frame::Emitter,
+    techniques::{Technique, TechniqueChoice, Value},
 };
 use tyndall_testkit::{
     device::{TestDevice, device_or_skip},
@@ -170,10 +170,8 @@ fn output(
             world_from_mesh: Mat4::from(placed.place).to_cols_array_2d(),
         })
         .collect();
-    let frame = Frame {
-        technique,
-        ..stage.frame.clone()
-    };
+    let frame = stage.frame.clone();
+    let frame_by = TechniqueChoice::from(technique);
     let uploaded = on::Uploaded::new(gpu, stage);
     let mut lights = uploaded.light_inputs();
     for light in &mut lights {
@@ -187,7 +185,14 @@ fn output(
         lights: &lights,
     };
     let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
-    let prepared = effect.prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame);
+    let prepared = effect.prepare(
+        &gpu.device,
+        &gpu.queue,
+        &mut view,
+        &inputs,
+        &frame,
+        &frame_by,
+    );
     prepared.expect("a good stage");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     effect.record(&mut encoder, &mut view, None);

@@ -153,7 +153,6 @@ impl Hall {
                 camera,
                 lights: vec![self.light],
                 medium,
-                technique: Technique::default(),
             },
         }
     }

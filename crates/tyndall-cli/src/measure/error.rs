@@ -1,4 +1,4 @@
-//! How far a picture is from the one that is taken for true.
+//! Errors of a picture against the one that is taken for true.
 
 use crate::{
     failure::Failure,

@@ -4,7 +4,6 @@ use tyndall::{
     LightInputs,
     cpu::{CpuLightInputs, GlassMap, LightTexture, ShadowMap},
     frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase, TexturePlacement},
-    techniques::Technique,
 };
 use tyndall_scene::{
     gpu::{
@@ -129,7 +128,6 @@ fn frame(camera: Camera, light: Light) -> Frame {
         medium: Medium {
             components: vec![air],
         },
-        technique: Technique::from_name("ray-march").unwrap(),
     }
 }
 

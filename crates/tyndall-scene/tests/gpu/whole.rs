@@ -6,7 +6,6 @@ use tyndall::{
     LightInputs,
     cpu::CpuLightInputs,
     frame::{Frame, Light},
-    techniques::Technique,
 };
 use tyndall_scene::{
     builtin::builtin,
@@ -39,7 +38,6 @@ fn frame(framing: &Framing, tracer: &Tracer) -> Frame {
         camera: framing.camera,
         lights: light.take(1).collect(),
         medium: framing.medium.clone(),
-        technique: Technique::from_name("ray-march").unwrap(),
     }
 }
 

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     frame::{Camera, DepthRange, Projection},
-    physics::medium::reals,
+    physics::reals,
 };
 
 /// A view ray up to the first surface or the far plane.

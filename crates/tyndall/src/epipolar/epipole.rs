@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::{camera::CameraRays, frame::Emitter, physics::medium::reals};
+use crate::{camera::CameraRays, frame::Emitter, physics::reals};
 
 /// A light nearer to the eye than this [m] has no place of its own on the picture.
 const LEAST_DISTANCE: f64 = 1e-6;

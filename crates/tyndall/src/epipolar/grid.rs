@@ -18,17 +18,14 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec3;
 
 use super::{
-    Resolution,
+    resolution::{DEFAULT_SLICES, Resolution},
     slices::{SliceCount, Slices},
 };
 use crate::{
     camera::{CameraRays, Ray},
-    cpu::LightSource,
+    light::LightSource,
     shadow::Face,
 };
-
-/// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
-pub(super) const DEFAULT_SLICES: usize = 1024;
 
 /// View rays nearer to the axis are not decomposed: `SVD_LEAST_SINE` of `svd_stretch.wgsl`.
 pub(crate) const SVD_LEAST_SINE: f64 = 0.1;
@@ -46,31 +43,31 @@ const FAR: f64 = 1e30;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EpipolarGrid {
     /// Orthographic and sun: the view's angle to the axis as a cotangent.
-    cotangent: f64,
-    orthographic: bool,
+    pub(crate) cotangent: f64,
+    pub(crate) orthographic: bool,
     /// Distance of a local light from the eye [m]; `None`: the sun.
-    local: Option<f64>,
+    pub(crate) local: Option<f64>,
     /// Where view rays are measured from: the eye; orthographic and local: the light.
-    origin: DVec3,
+    pub(crate) origin: DVec3,
     #[cfg(feature = "gpu")]
-    eye: DVec3,
+    pub(crate) eye: DVec3,
     /// A local light's position; unused for the sun.
-    light: DVec3,
-    axis: DVec3,
-    across: [DVec3; 2],
+    pub(crate) light: DVec3,
+    pub(crate) axis: DVec3,
+    pub(crate) across: [DVec3; 2],
     pub(crate) slices: Slices,
     /// Light rays a slice, a power of two.
     pub(crate) samples: usize,
-    gamma_start: f64,
-    gamma_step: f64,
-    b_start: f64,
-    b_scale: f64,
-    least_off_axis: f64,
+    pub(crate) gamma_start: f64,
+    pub(crate) gamma_step: f64,
+    pub(crate) b_start: f64,
+    pub(crate) b_scale: f64,
+    pub(crate) least_off_axis: f64,
     /// Range of gamma over which tints are summed.
-    tint_range: [f64; 2],
-    beta_range: [f64; 2],
+    pub(crate) tint_range: [f64; 2],
+    pub(crate) beta_range: [f64; 2],
     /// Of the view rays, from start to far plane [m].
-    longest: f64,
+    pub(crate) longest: f64,
 }
 
 /// What of the scene a grid covers.
@@ -225,35 +222,6 @@ impl EpipolarGrid {
             if sees(self.axis) { 0.0 } else { low },
             if sees(-self.axis) { 2.0 } else { high },
         ]
-    }
-
-    /// As shaders see it, with so many columns of tints a slice.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn uniform(&self, tint_columns: usize) -> super::gpu::EpipolarUniform {
-        let [alpha_start, alpha_step] = self.slices.start_and_step().map(|x| x as f32);
-        let floats = |v: DVec3| v.as_vec3().to_array();
-        super::gpu::EpipolarUniform {
-            axis: floats(self.axis),
-            distance: self.local.unwrap_or(0.0) as f32,
-            across_x: floats(self.across[0]),
-            alpha_start,
-            across_y: floats(self.across[1]),
-            alpha_step,
-            gamma_start: self.gamma_start as f32,
-            gamma_step: self.gamma_step as f32,
-            b_start: self.b_start as f32,
-            b_scale: self.b_scale as f32,
-            slices: self.slices.count as u32,
-            samples: self.samples as u32,
-            least_off_axis: self.least_off_axis as f32,
-            cotangent: self.cotangent as f32,
-            tint_start: self.tint_range[0] as f32,
-            tint_step: ((self.tint_range[1] - self.tint_range[0]) / tint_columns as f64) as f32,
-            tint_columns: tint_columns as u32,
-            turns: u32::from(self.slices.is_whole_turn()),
-            position: floats(self.light - self.eye),
-            pad: 0,
-        }
     }
 
     /// Distance of a local light from the eye [m]; `None`: the sun.

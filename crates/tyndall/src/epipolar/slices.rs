@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::EpipolarFrame;
+use super::coordinates::EpipolarFrame;
 use crate::camera::CameraRays;
 
 /// The most slices by the half-pixel rule: at very wide angles the rule is given up before memory is.
@@ -148,7 +148,7 @@ fn smallest_step(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{cpu::LightSource, frame::Camera};
+    use crate::{frame::Camera, light::LightSource};
     use glam::{DVec2, DVec3};
     use tyndall_testkit::samples::in_box;
 

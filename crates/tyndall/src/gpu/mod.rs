@@ -1,7 +1,7 @@
 //! GPU machinery that knows nothing of techniques: passes, pipelines, resources, uniforms, timing.
 
 pub(crate) mod airlight;
-pub(crate) mod fill;
+pub(crate) mod cache;
 pub(crate) mod layout;
 pub(crate) mod limits;
 pub(crate) mod pass;

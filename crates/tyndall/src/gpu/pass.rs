@@ -8,6 +8,31 @@ pub(crate) struct Pass {
     pub(crate) work: Work,
 }
 
+/// The passes of one light, in the order they run.
+pub(crate) struct LightPasses {
+    /// All but the last: they read the frame and the light, and write what the last one reads.
+    pub(crate) before: Vec<Pass>,
+    /// Writes the light's in-scatter to the scope's target, pixel by pixel.
+    pub(crate) last: Pass,
+    /// Buffer that the last pass reads at its own tile (see `passes/occluder/tile.wgsl`) and that may change where neither
+    /// depth nor shadow map do.
+    pub(crate) witness: Option<wgpu::Buffer>,
+    /// Share of the light that reaches each pixel's surface, where it was asked for and the technique computes it.
+    pub(crate) visibility: Option<wgpu::TextureView>,
+}
+
+impl LightPasses {
+    /// Passes whose last one reads nothing but the frame, the light and what those before it wrote.
+    pub(crate) fn new(before: Vec<Pass>, last: Pass) -> Self {
+        Self {
+            before,
+            last,
+            witness: None,
+            visibility: None,
+        }
+    }
+}
+
 /// What a pass does.
 pub(crate) enum Work {
     /// Dispatches, each of which sees what the ones before it wrote.

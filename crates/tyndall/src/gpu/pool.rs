@@ -98,6 +98,26 @@ impl Pool {
         texture
     }
 
+    /// A texture of this size that passes draw on, read and copy from.
+    pub(crate) fn attachment(
+        &mut self,
+        device: &wgpu::Device,
+        key: Key,
+        [width, height]: [u32; 2],
+        format: wgpu::TextureFormat,
+    ) -> wgpu::TextureView {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC;
+        let size = wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        };
+        self.texture(device, key, size, 1, format, usage)
+            .create_view(&wgpu::TextureViewDescriptor::default())
+    }
+
     /// A uniform buffer that holds `value`.
     pub(crate) fn uniform<T: bytemuck::Pod>(
         &mut self,

@@ -1,7 +1,10 @@
 //! What a technique sees when it prepares a light: the frame, the light's inputs, and where to keep things.
 
+use std::sync::Arc;
+
 use super::{
     airlight::AirlightPictures,
+    cache::{ProgramCache, Programs},
     layout::{self, Absent},
     pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
     pool::Pool,
@@ -10,8 +13,8 @@ use super::{
 };
 use crate::{
     camera::CameraRays,
-    effect::{Count, CountValue, LightInputs, SurfaceShadows},
     frame::{Frame, Light},
+    inputs::{Count, CountValue, LightInputs, SurfaceShadows},
 };
 
 /// What all passes of an effect share.
@@ -24,6 +27,7 @@ pub(crate) struct Shared {
     /// Format of the in-scattered light.
     pub(crate) output: wgpu::TextureFormat,
     airlight: AirlightPictures,
+    programs: ProgramCache,
 }
 
 impl Shared {
@@ -40,7 +44,70 @@ impl Shared {
             }),
             output,
             airlight: AirlightPictures::default(),
+            programs: ProgramCache::default(),
         }
+    }
+
+    /// Bind group 0.
+    pub(crate) fn frame_group(
+        &self,
+        device: &wgpu::Device,
+        uniform: &wgpu::Buffer,
+        depth: &wgpu::TextureView,
+        lights_before: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("tyndall frame"),
+            layout: &self.frame_layout,
+            entries: &[
+                buffer_entry(0, uniform),
+                texture_entry(1, depth),
+                texture_entry(2, lights_before),
+            ],
+        })
+    }
+
+    /// Bind group 1.
+    pub(crate) fn light_group(
+        &self,
+        device: &wgpu::Device,
+        uniform: &wgpu::Buffer,
+        inputs: &LightInputs<'_>,
+    ) -> wgpu::BindGroup {
+        let absent = &self.absent;
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("tyndall light"),
+            layout: &self.light_layout,
+            entries: &[
+                buffer_entry(0, uniform),
+                texture_entry(1, inputs.shadow_map.unwrap_or(&absent.shadow_map)),
+                texture_entry(2, inputs.glass.unwrap_or(&absent.glass)),
+                texture_entry(3, inputs.texture.unwrap_or(&absent.picture)),
+                wgpu::BindGroupEntry {
+                    binding: 4,
+                    resource: wgpu::BindingResource::Sampler(&self.sampler),
+                },
+            ],
+        })
+    }
+
+    /// The effect's programs of this type.
+    pub(crate) fn programs<P: Programs>(&self, device: &wgpu::Device) -> Arc<P> {
+        self.programs.get(|| P::new(device, self))
+    }
+}
+
+fn buffer_entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry {
+        binding,
+        resource: buffer.as_entire_binding(),
+    }
+}
+
+fn texture_entry(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
+    wgpu::BindGroupEntry {
+        binding,
+        resource: wgpu::BindingResource::TextureView(view),
     }
 }
 
@@ -66,13 +133,8 @@ pub(crate) struct LightScope<'a> {
     pub(crate) target: wgpu::TextureView,
     /// Which pixels the last pass writes, where 1; `None`: all.
     pub(crate) stencil: Option<wgpu::TextureView>,
-    /// What the last pass reads at its own tile (see `occluder/tile.wgsl`), and may change where neither depth nor shadow map
-    /// do.
-    pub(crate) witness: Option<wgpu::Buffer>,
     /// Whether shadows on surfaces are asked for, and what is known of the surfaces.
     pub(crate) surface_shadows: Option<&'a SurfaceShadows>,
-    /// How much of the light reaches each pixel's surface, where the technique says so.
-    pub(crate) visibility: Option<wgpu::TextureView>,
     /// What the frame's passes count.
     pub(crate) counts: &'a mut Vec<Count>,
 }
@@ -96,6 +158,11 @@ impl<T> Blocks<T> {
 }
 
 impl LightScope<'_> {
+    /// The effect's programs of this type.
+    pub(crate) fn programs<P: Programs>(&self) -> Arc<P> {
+        self.shared.programs(self.device)
+    }
+
     /// The airlight tables of the frame's medium, one layer a component.
     pub(crate) fn airlight(&self) -> wgpu::TextureView {
         let pictures = &self.shared.airlight;

@@ -29,9 +29,9 @@ pub(crate) const SHADOW: &str = include_str!("../shadow/shadow.wgsl");
 pub(crate) const MARCH: &str = include_str!("../shadow/march.wgsl");
 
 /// Epipolar lines on the picture; needs `CHOICE`.
-pub(crate) const SCREEN: &str = include_str!("../epipolar/screen.wgsl");
+pub(crate) const SCREEN: &str = include_str!("../passes/epipolar/screen.wgsl");
 /// Slices in their shadow map; needs `SCREEN`, frame and light.
-pub(crate) const TRACE: &str = include_str!("../epipolar/trace.wgsl");
+pub(crate) const TRACE: &str = include_str!("../passes/epipolar/trace.wgsl");
 
 /// What a pass needs that reads the camera, the medium and the depth buffer.
 pub(crate) const FRAME_MODULES: &[&str] = &[PHASE, TRANSMITTANCE, MEDIUM, CAMERA, FRAME, CHOICE];

@@ -7,7 +7,7 @@ use crate::{
     camera::CameraRays,
     frame::{self, DepthRange, Emitter, Phase, Projection, ShadowProjection},
     light::texture::{MappingKind, TextureMapping},
-    physics::medium::{Optics, reals},
+    physics::{medium::Optics, reals},
     shadow,
 };
 
@@ -280,7 +280,7 @@ mod tests {
 
     use crate::{
         gpu::shader::{AIRLIGHT, FRAME_MODULES, LIGHT_MODULES, MARCH, STRETCH, join},
-        occluder,
+        passes,
         techniques::{hybrid, light_volume, ray_march},
     };
 
@@ -297,8 +297,8 @@ mod tests {
             STRETCH,
             MARCH,
             ray_march::gpu::PARAMS,
-            occluder::gpu::TILE,
-            occluder::gpu::VOLUME,
+            passes::occluder::TILE,
+            passes::occluder::VOLUME,
             hybrid::gpu::HYBRID,
             light_volume::gpu::CUBE,
             light_volume::gpu::MESH,
@@ -333,7 +333,7 @@ mod tests {
             ),
             (
                 "OccluderParams",
-                layout!(occluder::gpu::ParamsUniform: first_place, places, edges, triangles, least, walls, most, caps,
+                layout!(passes::occluder::ParamsUniform: first_place, places, edges, triangles, least, walls, most, caps,
                     counts, columns),
             ),
             (

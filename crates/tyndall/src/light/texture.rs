@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec3};
 
 use crate::{
-    cpu::LightTexture,
     frame::{Emitter, TexturePlacement},
-    physics::medium::reals,
+    inputs::LightTexture,
+    physics::reals,
 };
 
 /// How a point becomes a place on the picture: rows of an affine map relative to `origin`.

@@ -29,7 +29,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{quadrature::quadrature, transmittance::transmittance_integral};
-use crate::{frame::Phase, light::LIGHT_RADIUS};
+use crate::frame::Phase;
 
 /// Columns of a table: T.
 ///
@@ -38,6 +38,10 @@ use crate::{frame::Phase, light::LIGHT_RADIUS};
 pub const TABLE_WIDTH: usize = 256;
 /// Rows of a table: optical depth.
 pub const TABLE_HEIGHT: usize = 128;
+
+/// A point light is a ball of this radius [m] inside which 1 / d^2 grows no further: a view ray through the light's
+/// very position stays finite.
+pub const LIGHT_RADIUS: f64 = 1e-3;
 
 /// The tables `near` and `far` of one phase function.
 #[derive(Clone, Debug)]
@@ -143,41 +147,6 @@ impl AirlightTable {
         };
         [near_scale(u, t) * ratio(0), far_scale(u, t) * ratio(1)]
     }
-}
-
-/// The tables as a texture that `airlight.wgsl` reads, one layer a phase function.
-#[cfg(feature = "gpu")]
-pub fn picture(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    tables: &[&AirlightTable],
-) -> wgpu::TextureView {
-    use wgpu::util::DeviceExt;
-    let texels: Vec<[f32; 2]> = tables
-        .iter()
-        .flat_map(|t| t.texels.iter().copied())
-        .collect();
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("tyndall airlight"),
-        size: wgpu::Extent3d {
-            width: TABLE_WIDTH as u32,
-            height: TABLE_HEIGHT as u32,
-            depth_or_array_layers: tables.len() as u32,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rg32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    device
-        .create_texture_with_data(queue, &descriptor, order, bytemuck::cast_slice(&texels))
-        .create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        })
 }
 
 /// x with `x^2 (3 - 2 x) = v / (1 + v)`, for v >= 0.
@@ -307,7 +276,7 @@ mod tests {
         };
         let phase = Phase::HenyeyGreenstein { g: 0.5 };
         let table = AirlightTable::new(phase);
-        let picture = super::picture(&gpu.device, &gpu.queue, &[&table]);
+        let picture = crate::gpu::airlight::upload(&gpu.device, &gpu.queue, &[&table]);
         let ranges = [-5.0..=0.0, -2.0..=1.5, -20.0..=40.0, 0.0..=30.0, 0.0..=30.0];
         let inputs = tyndall_testkit::samples::in_box(11, 20_000, ranges);
         let found = wgsl::evaluate_with(

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::vector::reals;
 use crate::frame::{Medium, MediumComponent};
 
 /// An f64 view of a [`Medium`].
@@ -38,9 +39,4 @@ impl Optics {
     pub fn transmittance(&self, distance: f64) -> DVec3 {
         (-self.sigma_t * distance).exp()
     }
-}
-
-/// A public array as the vector the f64 side works with.
-pub(crate) fn reals(array: [f32; 3]) -> DVec3 {
-    DVec3::from(array.map(f64::from))
 }

@@ -5,3 +5,7 @@ pub mod medium;
 pub mod phase;
 pub(crate) mod quadrature;
 pub mod transmittance;
+mod vector;
+
+pub use airlight::LIGHT_RADIUS;
+pub(crate) use vector::reals;

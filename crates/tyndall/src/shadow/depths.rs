@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::Shadows;
+use super::map::Shadows;
 
 /// Squares of a level that a rectangle may span a side before a coarser level is read.
 const SQUARES: u32 = 2;
@@ -114,8 +114,8 @@ impl Level {
 mod tests {
     use super::*;
     use crate::{
-        cpu::{CpuLightInputs, ShadowMap},
         frame::{Emitter, ShadowProjection},
+        inputs::{CpuLightInputs, ShadowMap},
     };
     use tyndall_testkit::samples::in_box;
 

@@ -5,8 +5,10 @@
 
 use glam::DVec4;
 
-use super::{Shadows, texel_index};
-use crate::cpu::Shade;
+use super::{
+    map::{Shadows, picture_point, texel_index},
+    shade::Shade,
+};
 
 /// A ray in a face's clip space.
 #[derive(Clone, Copy)]
@@ -214,7 +216,7 @@ fn for_each_texel(
         let end = columns.next.min(rows.next).min(to);
         if end > start {
             let clip = ray.at(0.5 * (start + end));
-            let texel = super::picture_point(clip).and_then(|uv| texel_index(uv, size));
+            let texel = picture_point(clip).and_then(|uv| texel_index(uv, size));
             if let Some(texel) = texel {
                 visit(texel, [start, end]);
             }

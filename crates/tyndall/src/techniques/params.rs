@@ -2,6 +2,7 @@
 
 use std::{marker::PhantomData, ops::RangeInclusive};
 
+use super::info::TechniqueInfo;
 use crate::epipolar::Resolution;
 
 /// A parameter's value, as a file or a command line gives it.
@@ -140,7 +141,7 @@ macro_rules! param {
             key: stringify!($field),
             about: $about,
             range: $range,
-            get: |p| $crate::techniques::Value::Integer(p.$field.into()),
+            get: |p| $crate::techniques::params::Value::Integer(p.$field.into()),
             set: |p, v| {
                 p.$field = v.integer($low..=$high).filter($allowed)?;
                 Some(())
@@ -152,7 +153,7 @@ macro_rules! param {
             key: stringify!($field),
             about: $about,
             range: concat!("a number from ", $low, " to ", $high),
-            get: |p| $crate::techniques::Value::Real(p.$field),
+            get: |p| $crate::techniques::params::Value::Real(p.$field),
             set: |p, v| {
                 p.$field = v.real($low as f64..=$high as f64)?;
                 Some(())
@@ -164,7 +165,7 @@ macro_rules! param {
             key: stringify!($field),
             about: $about,
             range: "true or false",
-            get: |p| $crate::techniques::Value::Bool(p.$field),
+            get: |p| $crate::techniques::params::Value::Bool(p.$field),
             set: |p, v| {
                 p.$field = v.bool()?;
                 Some(())
@@ -189,8 +190,8 @@ pub(crate) use param;
 
 /// The parameters of a technique.
 pub(crate) trait Parameters: Default + Sized + 'static {
-    /// The technique's name.
-    const TECHNIQUE: &'static str;
+    /// The technique's entry in the table.
+    const INFO: TechniqueInfo;
     /// All of them, in groups that techniques may share.
     const PARAMS: &'static [&'static [Param<Self>]];
 
@@ -214,7 +215,7 @@ pub(crate) trait Parameters: Default + Sized + 'static {
         let Some(param) = Self::all().find(|p| p.key == key) else {
             let keys: Vec<_> = Self::all().map(|p| p.key).collect();
             return Err(ParamError::Unknown {
-                technique: Self::TECHNIQUE,
+                technique: Self::INFO.name,
                 key: key.to_owned(),
                 known: keys.join(", "),
             });

@@ -1,29 +1,29 @@
 //! The passes about a technique's last one.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 
 use super::{
-    Reach, Reuse, ReuseMask, ReuseShow,
     gate::{self, gate},
     history::{Generations, Placed, Viewpoint},
+    options::{Reuse, ReuseMask, ReuseShow},
 };
 use crate::{
-    effect::{CountValue, LightInputs},
     error::PrepareError,
     frame::{Emitter, Light},
     gpu::{
-        layout, limits,
-        pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
-        program::{ComputeProgram, STENCIL_FORMAT, ScreenProgram, Stencil},
+        cache, layout, limits,
+        pass::{Dispatch, Draw, FullScreen, LightPasses, Pass, Vertices, Work, Workgroups},
+        program::{ComputeProgram, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
         shader::MARCH,
         uniforms::CameraUniform,
     },
-    occluder::{
-        Occluder,
-        gpu::{self as volumes, Names, TILE, VolumePrograms, check_list},
-    },
-    validate::faces,
+    inputs::CountValue,
+    mesh::Occluder,
+    passes::occluder::{self as volumes, Names, TILE, VolumePrograms, check_list},
+    techniques::{LightRequest, Reach},
 };
 
 pub(super) const REUSE: &str = include_str!("reuse.wgsl");
@@ -90,12 +90,12 @@ pub(crate) struct Programs {
     restore: ScreenProgram,
     sum: ScreenProgram,
     show: ScreenProgram,
-    touched: VolumePrograms,
+    touched: Arc<VolumePrograms>,
     gate: gate::Programs,
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let params = layout::uniform::<ParamsUniform>(0);
         let written = |binding| layout::storage(binding, false);
         let read = |binding| layout::storage(binding, true);
@@ -176,21 +176,21 @@ impl Programs {
             .for_all_lights(),
             sum: screen("reuse sum", &[SUM], "sum", &[layout::texels(0)]).for_all_lights(),
             show: screen("reuse show", &[REUSE, STENCIL, SHOW], "show", &show).for_all_lights(),
-            touched: VolumePrograms::new(device, shared),
+            touched: shared.programs(device),
             gate: gate::Programs::new(device, shared, params),
         }
     }
 }
 
 /// Refuses what cannot be kept.
-pub(crate) fn check(
-    reuse: &Reuse,
-    limits: &wgpu::Limits,
-    [width, height]: [u32; 2],
-    index: usize,
-    light: &Light,
-    inputs: &LightInputs<'_>,
-) -> Result<(), PrepareError> {
+pub(crate) fn check(reuse: &Reuse, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+    let LightRequest {
+        limits,
+        size: [width, height],
+        index,
+        light,
+        inputs,
+    } = *request;
     if let Some(tolerance) = reuse.reproject.filter(|t| !(t.is_finite() && *t > 0.0)) {
         return Err(PrepareError::OutOfRange {
             field: "reuse.reproject".to_owned(),
@@ -211,7 +211,7 @@ pub(crate) fn check(
     }
     let texels = inputs.shadow_map.map_or(0, |map| {
         let size = map.texture().size();
-        u64::from(size.width) * u64::from(size.height) * u64::from(faces(light))
+        u64::from(size.width) * u64::from(size.height) * u64::from(light.faces())
     });
     // The map takes a word a texel, depth and age one a pixel each, what is found in another camera's picture four.
     let pixel = if reuse.reproject.is_some() { 16 } else { 4 };
@@ -241,34 +241,6 @@ impl Frame<'_> {
     }
 }
 
-/// The stencil through which a light's last pass draws.
-pub(crate) fn stencil(scope: &mut LightScope<'_>) -> wgpu::TextureView {
-    picture("reuse stencil", STENCIL_FORMAT, scope)
-}
-
-/// The picture that a light's in-scatter is kept in.
-pub(crate) fn kept(scope: &mut LightScope<'_>) -> wgpu::TextureView {
-    picture("kept in-scatter", scope.shared.output, scope)
-}
-
-fn picture(
-    name: &'static str,
-    format: wgpu::TextureFormat,
-    scope: &mut LightScope<'_>,
-) -> wgpu::TextureView {
-    let size = wgpu::Extent3d {
-        width: scope.size[0],
-        height: scope.size[1],
-        depth_or_array_layers: 1,
-    };
-    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
-        | wgpu::TextureUsages::TEXTURE_BINDING
-        | wgpu::TextureUsages::COPY_SRC;
-    scope
-        .texture(name, size, 1, format, usage)
-        .create_view(&wgpu::TextureViewDescriptor::default())
-}
-
 /// Buffers of one light.
 pub(super) struct Buffers {
     pub(super) params: wgpu::Buffer,
@@ -295,19 +267,23 @@ fn levels(map: [u32; 2]) -> Vec<[u32; 2]> {
 }
 
 impl Buffers {
-    fn new(frame: &Frame<'_>, scope: &mut LightScope<'_>) -> Self {
+    fn new(frame: &Frame<'_>, witness: Option<&wgpu::Buffer>, scope: &mut LightScope<'_>) -> Self {
         let map = scope.inputs.shadow_map.map(|map| map.texture().size());
         let map = map.map_or([0; 2], |size| [size.width, size.height]);
-        let faces = if map == [0; 2] { 0 } else { faces(scope.light) };
+        let faces = if map == [0; 2] {
+            0
+        } else {
+            scope.light.faces()
+        };
         let levels = levels(map);
-        let params = params(frame, map, faces, &levels, scope);
+        let params = params(frame, (map, faces), &levels, witness.is_some(), scope);
         let blocks: u64 = levels
             .iter()
             .map(|[w, h]| u64::from(*w) * u64::from(*h))
             .sum();
         let texels = u64::from(map[0]) * u64::from(map[1]) * u64::from(faces);
         let pixels = u64::from(scope.size[0]) * u64::from(scope.size[1]);
-        let witnessed = scope.witness.as_ref().map_or(8, wgpu::Buffer::size);
+        let witnessed = witness.map_or(8, wgpu::Buffer::size);
         let found = if frame.reuse.reproject.is_some() {
             pixels
         } else {
@@ -335,9 +311,9 @@ impl Buffers {
 
 fn params(
     frame: &Frame<'_>,
-    map: [u32; 2],
-    faces: u32,
+    (map, faces): ([u32; 2], u32),
     levels: &[[u32; 2]],
+    has_witness: bool,
     scope: &LightScope<'_>,
 ) -> ParamsUniform {
     let tiles = scope.size.map(|n| n.div_ceil(SIDE).div_ceil(SIDE));
@@ -352,13 +328,13 @@ fn params(
     }
     let (reach, margin) = match frame.reach {
         Reach::Pixels(margin) => (0, margin),
-        Reach::Picture => (1, 0.0),
+        Reach::Image => (1, 0.0),
     };
     ParamsUniform {
         pixels: scope.size,
         map,
         faces,
-        generation: frame.generations.whole,
+        generation: frame.generations.exact,
         frames: frame.reuse.frames.unwrap_or(u32::MAX),
         mask: match frame.reuse.mask {
             ReuseMask::Change => 0,
@@ -366,10 +342,10 @@ fn params(
         },
         margin,
         reach,
-        has_witness: u32::from(scope.witness.is_some()),
+        has_witness: u32::from(has_witness),
         levels: levels.len() as u32,
         kin: match frame.reprojection(scope.light) {
-            Some(_) => frame.generations.kin,
+            Some(_) => frame.generations.ignoring_camera,
             None => 0,
         },
         pad: [0; 3],
@@ -377,27 +353,31 @@ fn params(
     }
 }
 
-/// A light's passes with those that find what is stale before the last one. Where the mask doesn't depend on the passes
-/// before the last one, it comes first, and they do nothing where nothing is stale.
+/// A technique's passes with those that find what is stale before the last one, and one that adds the kept light to the
+/// lights before. Where the mask doesn't depend on the passes before the last one, it comes first, and they do nothing
+/// where nothing is stale.
 pub(crate) fn wrap(
-    mut own: Vec<Pass>,
+    own: LightPasses,
     frame: &Frame<'_>,
-    programs: &Programs,
+    sum: (wgpu::TextureView, wgpu::BindGroup),
     scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
-    let last = own.pop();
-    let is_witnessed = scope.witness.is_some();
-    let mut passes = Vec::new();
-    if is_witnessed {
-        passes.append(&mut own);
-    }
+) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
+    let mut witness = own.witness;
+    let (mut passes, gated) = match witness {
+        Some(_) => (own.before, Vec::new()),
+        None => (Vec::new(), own.before),
+    };
     if frame.reuse.mask == ReuseMask::Geometry {
-        passes.extend(touch(frame.moved, programs, scope));
+        let (touch, tiles) = touch(frame.moved, programs, scope);
+        passes.extend(touch);
+        witness = Some(tiles);
     }
-    let buffers = Buffers::new(frame, scope);
-    passes.push(find(frame, &buffers, programs, scope));
-    if !own.is_empty() {
-        passes.extend(gate(own, &buffers, &programs.gate, scope));
+    let buffers = Buffers::new(frame, witness.as_ref(), scope);
+    passes.push(find(frame, witness.as_ref(), &buffers, programs, scope));
+    if !gated.is_empty() {
+        passes.extend(gate(gated, &buffers, &programs.gate, scope));
     }
     if let Some(stencil) = scope.stencil.clone() {
         passes.push(mark(&buffers, stencil, programs, scope));
@@ -405,18 +385,26 @@ pub(crate) fn wrap(
     if frame.reprojection(scope.light).is_some() {
         passes.push(restore(&buffers, programs, scope));
     }
-    passes.extend(last);
+    passes.push(own.last);
+    let last = add(frame, &buffers, sum, programs, scope);
     let (buffer, offset) = (buffers.state, STALE);
     scope.count("stale pixels,", CountValue::Written { buffer, offset });
-    passes
+    LightPasses {
+        before: passes,
+        last,
+        witness: None,
+        visibility: own.visibility,
+    }
 }
 
 /// Finds where the shadows of what moved are on the screen: the last pass's witness then.
-fn touch(moved: &[Placed], programs: &Programs, scope: &mut LightScope<'_>) -> [Pass; 3] {
+fn touch(
+    moved: &[Placed],
+    programs: &Programs,
+    scope: &mut LightScope<'_>,
+) -> ([Pass; 3], wgpu::Buffer) {
     let occluders: Vec<Occluder<'_>> = moved.iter().map(Placed::as_occluder).collect();
-    let (passes, tiles) = volumes::passes(&NAMES, &occluders, &programs.touched, scope);
-    scope.witness = Some(tiles);
-    passes
+    volumes::passes(&NAMES, &occluders, &programs.touched, scope)
 }
 
 const NAMES: Names = Names {
@@ -431,6 +419,7 @@ const NAMES: Names = Names {
 /// The dispatches that leave the pixels' ages.
 fn find(
     frame: &Frame<'_>,
+    witness: Option<&wgpu::Buffer>,
     buffers: &Buffers,
     programs: &Programs,
     scope: &mut LightScope<'_>,
@@ -469,7 +458,7 @@ fn find(
         dispatches.push(scope.dispatch(program, &resources, indirect(1 + level)));
     }
     let absent = scope.storage("reuse no witness", 8);
-    let witness = scope.witness.clone().unwrap_or(absent);
+    let witness = witness.unwrap_or(&absent);
     let tiles = [
         params,
         state,
@@ -502,7 +491,7 @@ fn reproject(
         pad: [0.0; 3],
     };
     let uniform = scope.uniform("reuse reproject", &uniform);
-    let kept = kept(scope);
+    let kept = scope.target.clone();
     let resources = [
         buffers.params.as_entire_binding(),
         uniform.as_entire_binding(),
@@ -547,25 +536,26 @@ fn mark(
     }
 }
 
-/// The pass that adds a light's kept picture, or what is shown of its reuse, to the lights before; none where the kept
-/// picture is all there is to show.
-pub(crate) fn add(
+/// Creates the pass that adds a light's kept in-scatter, or what is shown of its reuse, to the lights before. `sum` is
+/// what it draws on, and bind group 0 with the lights before.
+fn add(
     frame: &Frame<'_>,
-    kept: &wgpu::TextureView,
-    target: wgpu::TextureView,
+    buffers: &Buffers,
+    (sum, with_lights_before): (wgpu::TextureView, wgpu::BindGroup),
     programs: &Programs,
     scope: &mut LightScope<'_>,
 ) -> Pass {
-    let own = [wgpu::BindingResource::TextureView(kept)];
+    let kept = scope.target.clone();
+    scope.frame_group = with_lights_before;
+    let own = [wgpu::BindingResource::TextureView(&kept)];
     let what = match frame.reuse.show {
         ReuseShow::Light => {
-            let draw = scope.draw(&programs.sum, &own, target);
+            let draw = scope.draw(&programs.sum, &own, sum);
             return of_draw(scope.pass_name("add light"), draw);
         }
         ReuseShow::Mask => 1,
         ReuseShow::Age => 2,
     };
-    let buffers = Buffers::new(frame, scope);
     let what = scope.uniform("reuse show", &[what, 0u32, 0, 0]);
     let [kept] = own;
     let own = [
@@ -575,7 +565,7 @@ pub(crate) fn add(
         kept,
         what.as_entire_binding(),
     ];
-    let draw = scope.draw(&programs.show, &own, target);
+    let draw = scope.draw(&programs.show, &own, sum);
     of_draw(scope.pass_name("show reuse"), draw)
 }
 

@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::{Reuse, ReuseMask};
+use super::options::{Reuse, ReuseMask};
 use crate::{
-    effect::LightInputs,
     frame::{Camera, Frame, Light, Medium},
     gpu::uniforms::{CameraUniform, LightVariant},
-    occluder::{Occluder, OccluderMesh},
+    inputs::LightInputs,
+    mesh::{Occluder, OccluderMesh},
     techniques::Technique,
 };
 
@@ -36,9 +36,9 @@ pub(crate) struct Viewpoint {
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Generations {
     /// Another one whenever the signature is.
-    pub(crate) whole: u32,
+    pub(crate) exact: u32,
     /// Another one whenever more of it than the camera's place is.
-    pub(crate) kin: u32,
+    pub(crate) ignoring_camera: u32,
 }
 
 #[derive(Default)]
@@ -82,12 +82,12 @@ impl Placed {
 #[derive(Clone, PartialEq)]
 pub(crate) struct Signature {
     camera: Camera,
-    kin: Kin,
+    scene: SceneSignature,
 }
 
 /// The same but for the camera.
 #[derive(Clone, PartialEq)]
-struct Kin {
+struct SceneSignature {
     light: Light,
     medium: Medium,
     variant: LightVariant,
@@ -102,7 +102,7 @@ struct Kin {
 
 impl Signature {
     pub(crate) fn new(
-        frame: &Frame,
+        (frame, technique): (&Frame, &Technique),
         light: &Light,
         variant: LightVariant,
         reuse: Reuse,
@@ -110,11 +110,11 @@ impl Signature {
     ) -> Self {
         Self {
             camera: frame.camera,
-            kin: Kin {
+            scene: SceneSignature {
                 light: *light,
                 medium: frame.medium.clone(),
                 variant,
-                technique: frame.technique.clone(),
+                technique: technique.clone(),
                 mask: reuse.mask,
                 reproject: reuse.reproject,
                 map: inputs.shadow_map.map(|map| map.texture().size()),
@@ -126,18 +126,18 @@ impl Signature {
 
     /// Whether a picture of the same signature may be kept: glass without a revision may change at any time.
     fn is_certain(&self) -> bool {
-        self.kin.glass != Some(None)
+        self.scene.glass != Some(None)
     }
 
     /// Whether the other differs in the camera's place and lens at most.
-    fn is_kin(&self, other: &Self) -> bool {
+    fn differs_by_camera_only(&self, other: &Self) -> bool {
         let kind = |camera: &Camera| {
             (
                 std::mem::discriminant(&camera.projection),
                 camera.depth_range,
             )
         };
-        self.kin == other.kin && kind(&self.camera) == kind(&other.camera)
+        self.scene == other.scene && kind(&self.camera) == kind(&other.camera)
     }
 }
 
@@ -166,9 +166,9 @@ impl History {
         let known = known.filter(|_| signature.is_certain());
         if known != Some(&signature) {
             self.generations = self.generations.wrapping_add(1).max(1);
-            history.generations.whole = self.generations;
-            if !known.is_some_and(|known| known.is_kin(&signature)) {
-                history.generations.kin = self.generations;
+            history.generations.exact = self.generations;
+            if !known.is_some_and(|known| known.differs_by_camera_only(&signature)) {
+                history.generations.ignoring_camera = self.generations;
             }
             history.signature = Some(signature);
         }

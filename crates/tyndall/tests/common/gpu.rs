@@ -5,8 +5,8 @@ use std::sync::OnceLock;
 use tyndall::{
     Effect, EffectOptions, FrameInputs, LightInputs, OutputPrecision,
     cpu::{GlassMap, LightTexture},
-    frame::{Frame, ShadowProjection},
-    techniques::Technique,
+    frame::ShadowProjection,
+    techniques::{Technique, TechniqueChoice},
 };
 use tyndall_testkit::{
     device::{TestDevice, device},
@@ -87,10 +87,8 @@ pub(crate) fn output(
     stage: &Stage,
     technique: Technique,
 ) -> Vec<[f32; 4]> {
-    let frame = Frame {
-        technique,
-        ..stage.frame.clone()
-    };
+    let frame = stage.frame.clone();
+    let frame_by = TechniqueChoice::from(technique);
     let uploaded = Uploaded::new(gpu, stage);
     let lights = uploaded.light_inputs();
     let inputs = FrameInputs {
@@ -99,7 +97,14 @@ pub(crate) fn output(
     };
     let mut view = effect.create_view(&gpu.device, SIZE).expect("a good size");
     effect
-        .prepare(&gpu.device, &gpu.queue, &mut view, &inputs, &frame)
+        .prepare(
+            &gpu.device,
+            &gpu.queue,
+            &mut view,
+            &inputs,
+            &frame,
+            &frame_by,
+        )
         .expect("a good stage");
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     effect.record(&mut encoder, &mut view, None);

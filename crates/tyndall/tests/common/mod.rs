@@ -12,7 +12,7 @@ use tyndall::{
         Camera, DepthRange, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection,
         ShadowProjection, TexturePlacement,
     },
-    techniques::{Technique, Value},
+    techniques::{Technique, TechniqueChoice, Value},
 };
 use tyndall_testkit::{metrics::compare, picture::Picture};
 
@@ -83,10 +83,8 @@ impl Stage {
 
     /// In-scatter by the CPU backend.
     pub(crate) fn on_cpu(&self, technique: Technique) -> Picture {
-        let frame = Frame {
-            technique,
-            ..self.frame.clone()
-        };
+        let frame = self.frame.clone();
+        let frame_by = TechniqueChoice::from(technique);
         let lights = self.cpu_lights();
         let inputs = CpuInputs {
             size: SIZE,
@@ -94,7 +92,7 @@ impl Stage {
             lights: &lights,
             occluders: None,
         };
-        let result = cpu::render(&frame, &inputs, &|_, _| {}).expect("a good stage");
+        let result = cpu::render(&frame, &inputs, &frame_by, &|_, _| {}).expect("a good stage");
         picture(&result.pixels)
     }
 }
@@ -365,7 +363,6 @@ pub(crate) fn stage(
             camera,
             lights: vec![light],
             medium,
-            technique: Technique::default(),
         },
     }
 }
@@ -476,7 +473,6 @@ pub(crate) fn crowd() -> Stage {
             camera,
             lights,
             medium,
-            technique: Technique::default(),
         },
     }
 }

@@ -1,8 +1,9 @@
 //! Stages as frames of one view.
 
 use tyndall::{
-    CountValue, Effect, EffectView, FrameInputs, LightInputs, Occluder, PrepareError, frame::Frame,
-    techniques::Technique, temporal::Reuse,
+    CountValue, Effect, EffectView, FrameInputs, LightInputs, Occluder, PrepareError,
+    techniques::{Technique, TechniqueChoice},
+    temporal::Reuse,
 };
 use tyndall_testkit::device::TestDevice;
 
@@ -52,10 +53,8 @@ impl<'a> Run<'a> {
         technique: &Technique,
         occluders: Option<&[Occluder<'_>]>,
     ) -> Result<(), PrepareError> {
-        let frame = Frame {
-            technique: technique.clone(),
-            ..stage.frame.clone()
-        };
+        let frame = stage.frame.clone();
+        let frame_by = TechniqueChoice::from(technique.clone());
         let uploaded = on::Uploaded::sized(self.size, self.gpu, stage);
         let lights = uploaded.light_inputs();
         let shadow_revision = self.revision;
@@ -71,7 +70,7 @@ impl<'a> Run<'a> {
         };
         let TestDevice { device, queue, .. } = self.gpu;
         self.effect
-            .prepare(device, queue, &mut self.view, &inputs, &frame)
+            .prepare(device, queue, &mut self.view, &inputs, &frame, &frame_by)
     }
 
     /// The output, as bits.

@@ -7,12 +7,12 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::{
-    cpu::{CpuLightInputs, ShadowMap},
     epipolar::{
         cells,
         tree::{LIT, Node, UNKNOWN},
     },
     frame::{Camera, Emitter, Light, Projection, ShadowProjection},
+    inputs::{CpuLightInputs, ShadowMap},
     light::LightModel,
     shadow::Shadows,
 };

@@ -3,16 +3,21 @@
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroupLayoutEntry, BindingResource, TextureFormat};
 
-use super::{Criterion, Params, Show, Sizes};
+use super::{
+    params::{Criterion, Params, Show},
+    sizes::{self, Sizes},
+};
 use crate::{
     epipolar::epipole::Epipole,
+    error::PrepareError,
     gpu::{
-        layout,
-        pass::{Dispatch, FullScreen, Pass, Work, Workgroups},
+        cache, layout,
+        pass::{Dispatch, FullScreen, LightPasses, Pass, Work, Workgroups},
         program::{ComputeProgram, Raster, ScreenProgram},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, SCREEN, STRETCH, TRACE},
     },
+    techniques::method::{GpuMethod, LightRequest},
 };
 
 /// Parameters that all stages read.
@@ -150,8 +155,8 @@ fn own(slots: &[Slot]) -> Vec<BindGroupLayoutEntry> {
     entries
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         use Slot::{Airlight, Correct, Picture, Read, Texels, Tree, Write};
         const VALUES: Slot = Picture(TextureFormat::Rgba32Float);
         const LIT: &[&str] = &[AIRLIGHT, STRETCH, UNSHADOWED];
@@ -316,24 +321,33 @@ fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
     [width.div_ceil(TILE[0]), height.div_ceil(TILE[1]), 1]
 }
 
+impl GpuMethod for Params {
+    fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+        sizes::check(self, request)
+    }
+
+    fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
+        passes(self, scope)
+    }
+}
+
 /// The passes of one light.
-pub(crate) fn passes(
-    params: &Params,
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
+fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
     let sizes = Sizes::new(params, scope.size, scope.light, &scope.inputs);
     let r = Resources::new(params, &sizes, scope);
     let mut passes = locate(programs, &sizes, scope, &r);
     passes.extend(gather(programs, &sizes, scope, &r));
     // Through a stencil the last pass alone draws.
     let is_direct = scope.stencil.is_none() && params.downscale == 1 && params.show == Show::Light;
-    if is_direct {
-        passes.extend(direct(programs, &sizes, scope, &r));
+    let (more, last) = if is_direct {
+        direct(programs, &sizes, scope, &r)
     } else {
-        passes.extend(rectangular(params, programs, &sizes, scope, &r));
-    }
-    passes
+        rectangular(params, programs, &sizes, scope, &r)
+    };
+    passes.extend(more);
+    LightPasses::new(passes, last)
 }
 
 /// Where samples lie, which of them are marched: stages 1 to 5.
@@ -459,7 +473,7 @@ fn direct(
     sizes: &Sizes,
     scope: &mut LightScope<'_>,
     r: &Resources,
-) -> Vec<Pass> {
+) -> (Vec<Pass>, Pass) {
     let (list, values) = r.rectangular(sizes, scope);
     let unwarp = scope.full_screen(
         &programs.unwarp_finish,
@@ -493,7 +507,7 @@ fn direct(
         name: scope.pass_name("corrected pixels"),
         work: Work::FullScreen(vec![points]),
     };
-    vec![unwarp, correction, points]
+    (vec![unwarp, correction], points)
 }
 
 /// Back to a picture by way of a rectangular one: stages 10 to 13, and the phase function or a debug view.
@@ -503,7 +517,7 @@ fn rectangular(
     sizes: &Sizes,
     scope: &mut LightScope<'_>,
     r: &Resources,
-) -> Vec<Pass> {
+) -> (Vec<Pass>, Pass) {
     let (list, coarse) = r.rectangular(sizes, scope);
     let unwarp = scope.compute(
         &programs.unwarp,
@@ -530,7 +544,7 @@ fn rectangular(
         passes.extend(passes_there);
         values = upscaled;
     }
-    passes.push(match params.show {
+    let last = match params.show {
         Show::Light => scope.full_screen(
             &programs.finish,
             "phase function",
@@ -546,8 +560,8 @@ fn rectangular(
                 buffer(&r.sources),
             ],
         ),
-    });
-    passes
+    };
+    (passes, last)
 }
 
 /// To full resolution: stages 12 and 13.

@@ -1,22 +1,24 @@
 //! The GPU side: the bounds, the light.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 
-use super::{Params, Show};
+use super::params::{Params, Show};
 use crate::{
-    effect::{CountValue, LightInputs},
     error::PrepareError,
     gpu::{
-        layout,
-        pass::Pass,
+        cache, layout,
+        pass::LightPasses,
         program::ScreenProgram,
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, MARCH, STRETCH},
     },
-    occluder::{
-        Occluder,
-        gpu::{self as volumes, Names, TILE, VolumePrograms, check_list},
-    },
+    inputs::CountValue,
+    mesh::Occluder,
+    passes::occluder::{self as volumes, Names, TILE, VolumePrograms, check_list},
+    techniques::info::Reach,
+    techniques::method::{GpuMethod, LightRequest},
 };
 
 /// The pass that writes the light.
@@ -42,22 +44,19 @@ const NAMES: Names = Names {
 };
 
 /// Refuses lists of silhouettes that the device cannot bind.
-pub(crate) fn check(
-    limits: &wgpu::Limits,
-    index: usize,
-    inputs: &LightInputs<'_>,
-) -> Result<(), PrepareError> {
-    check_list(limits, index, inputs.occluders.unwrap_or_default())
+fn check(request: &LightRequest<'_>) -> Result<(), PrepareError> {
+    let occluders = request.inputs.occluders.unwrap_or_default();
+    check_list(request.limits, request.index, occluders)
 }
 
 /// The technique's shaders.
 pub(crate) struct Programs {
-    volumes: VolumePrograms,
+    volumes: Arc<VolumePrograms>,
     hybrid: ScreenProgram,
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let own = [
             layout::uniform::<ParamsUniform>(0),
             layout::storage(1, true),
@@ -65,18 +64,30 @@ impl Programs {
         ];
         let modules = [AIRLIGHT, STRETCH, MARCH, TILE, HYBRID];
         Self {
-            volumes: VolumePrograms::new(device, shared),
+            volumes: shared.programs(device),
             hybrid: ScreenProgram::new(device, shared, "hybrid", &modules, "hybrid", &own),
         }
     }
 }
 
+impl GpuMethod for Params {
+    fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+        check(request)
+    }
+
+    fn reach(&self) -> Reach {
+        Reach::Pixels(0.0)
+    }
+
+    fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
+        passes(self, scope)
+    }
+}
+
 /// The passes of one light.
-pub(crate) fn passes(
-    params: &Params,
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
+fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
     let inputs = scope.inputs;
     // Outside the volumes pictures and glass still tint.
     let is_plain = inputs.glass.is_none() && scope.light.texture.is_none();
@@ -96,13 +107,14 @@ pub(crate) fn passes(
     };
     let uniform = scope.uniform("hybrid params", &uniform);
     let mut passes = Vec::new();
+    let mut witness = None;
     let bounds = match occluders.filter(|occluders| !occluders.is_empty()) {
         None => scope.storage("hybrid no bounds", 8),
         Some(occluders) => {
             count(occluders, scope);
             let (found, tiles) = volumes::passes(&NAMES, occluders, &programs.volumes, scope);
             passes.extend(found);
-            scope.witness = Some(tiles.clone());
+            witness = Some(tiles.clone());
             tiles
         }
     };
@@ -112,8 +124,12 @@ pub(crate) fn passes(
         bounds.as_entire_binding(),
         wgpu::BindingResource::TextureView(&airlight),
     ];
-    passes.push(scope.full_screen(&programs.hybrid, "hybrid", &resources));
-    passes
+    LightPasses {
+        before: passes,
+        last: scope.full_screen(&programs.hybrid, "hybrid", &resources),
+        witness,
+        visibility: None,
+    }
 }
 
 fn count(occluders: &[Occluder<'_>], scope: &mut LightScope<'_>) {

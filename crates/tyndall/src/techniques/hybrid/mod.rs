@@ -50,61 +50,17 @@
 
 #[cfg(feature = "gpu")]
 pub(crate) mod gpu;
+mod params;
 
-use super::{
-    Backends, LightKind, Technique, TechniqueInfo,
-    params::{Param, Parameters, param},
-};
+pub use params::*;
 
-/// The entry in the table.
-pub(super) const INFO: TechniqueInfo = TechniqueInfo {
-    name: "hybrid",
-    about: "silhouette shadow volumes bound the shadows: closed forms outside, steps between",
-    citation: "Wyman & Ramsey, Interactive Volumetric Shadows in Participating Media with Single-Scattering, IEEE Interactive Ray Tracing 2008",
-    lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
-    backends: Backends::Gpu,
-    default: || Technique::Hybrid(Params::DEFAULT),
-};
+#[cfg(feature = "gpu")]
+use crate::techniques::method::GpuMethod;
+use crate::techniques::method::Method;
 
-/// Parameters of `hybrid`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// Steps over a whole ray (1 to 65536).
-    pub steps: u32,
-    /// What the picture shows.
-    pub show: Show,
-}
-
-/// What the picture shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Show {
-    /// The in-scattered light.
-    Light,
-    /// Where the marched stretch begins (red), ends (green), and how long it is (blue) [m].
-    Bounds,
-}
-
-const SHOWS: &[(&str, Show)] = &[("light", Show::Light), ("bounds", Show::Bounds)];
-
-impl Params {
-    const DEFAULT: Self = Self {
-        steps: 512,
-        show: Show::Light,
-    };
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self::DEFAULT
+impl Method for Params {
+    #[cfg(feature = "gpu")]
+    fn gpu(&self) -> Option<&dyn GpuMethod> {
+        Some(self)
     }
-}
-
-impl Parameters for Params {
-    const TECHNIQUE: &'static str = INFO.name;
-    const PARAMS: &'static [&'static [Param<Self>]] = &[&[
-        param!(whole steps, 1..=65536, "steps over a whole ray"),
-        param!(choice show, SHOWS,
-            "the light, or front and back distances of the shadow volumes",
-            "\"light\" or \"bounds\""),
-    ]];
 }

@@ -1,30 +1,36 @@
 //! The GPU side: maps, voxels and their scan of a batch of samples at a time, gathered into one picture.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 
-use super::{Gather, Params, surface};
+use super::{
+    params::{Gather, INFO, Params},
+    surface,
+};
 use crate::{
-    cpu::LightSource,
-    effect::{CountValue, LightInputs},
     epipolar::{
         Resolution,
-        gpu::{EPIPOLAR, EpipolarUniform},
         grid::{EpipolarGrid, GridScene},
     },
     error::PrepareError,
     frame::Medium,
     gpu::{
-        fill::Fill,
-        layout,
-        pass::Pass,
+        cache, layout,
+        pass::{LightPasses, Pass},
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
     },
-    shadow::imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
-    voxels::gpu::{self as voxels, Scan, VOXELS},
+    inputs::{CountValue, LightInputs},
+    light::LightSource,
+    passes::{
+        epipolar::{EPIPOLAR, EpipolarUniform},
+        fill::Fill,
+        imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
+        voxels::gpu::{self as voxels, Scan, VOXELS},
+    },
+    techniques::method::{GpuMethod, LightRequest},
 };
 
 const RECTIFY: &str = include_str!("rectify.wgsl");
@@ -86,9 +92,9 @@ impl ParamsUniform {
 
 /// The technique's shaders.
 pub(crate) struct Programs {
-    maps: imperfect::Programs,
-    fill: Fill,
-    scan: Scan,
+    maps: Arc<imperfect::Programs>,
+    fill: Arc<Fill>,
+    scan: Arc<Scan>,
     rectify: ComputeProgram,
     /// By the number of the medium's components, made when they are first asked for.
     gather: [OnceLock<ComputeProgram>; Medium::MAX_COMPONENTS + 1],
@@ -97,8 +103,8 @@ pub(crate) struct Programs {
     surface: OnceLock<surface::Programs>,
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let batch = layout::uniform::<BatchUniform>(0);
         let read = |binding| layout::storage(binding, true);
         let compute = |label, modules: &[&str], entry_point, own: &[_]| {
@@ -110,16 +116,18 @@ impl Programs {
         let own = [batch, layout::uniform::<ParamsUniform>(1), read(2)];
         let modules = [IMPERFECT, PARAMS, FILTER, RESOLVE];
         Self {
-            maps: imperfect::Programs::new(device, shared),
-            fill: Fill::new(device, shared),
-            scan: Scan::new(device, shared),
+            maps: shared.programs(device),
+            fill: shared.programs(device),
+            scan: shared.programs(device),
             rectify,
             gather: Default::default(),
             resolve: ScreenProgram::new(device, shared, "resolve", &modules, "ivsv_resolve", &own),
             surface: OnceLock::new(),
         }
     }
+}
 
+impl Programs {
     fn gather(&self, device: &wgpu::Device, shared: &Shared, components: usize) -> &ComputeProgram {
         let components = components.min(Medium::MAX_COMPONENTS);
         let make = || {
@@ -170,16 +178,22 @@ impl Buffers {
     }
 }
 
+impl GpuMethod for Params {
+    fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+        check(self, request)
+    }
+
+    fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
+        passes(self, scope)
+    }
+}
+
 /// The passes of one light: five a batch, and two; one more of each where shadows on surfaces are asked for.
-pub(crate) fn passes(
-    params: &Params,
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
-    let Some(area) = AreaLight::new(&scope.light.emitter) else {
-        // Refused by the table: it is no rectangle.
-        return Vec::new();
-    };
+fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
+    // Others than rectangles are refused by the table.
+    let area = AreaLight::new(&scope.light.emitter).unwrap_or_default();
     let samples = area.positions.len() as u32;
     let maps = maps(params, samples, &scope.inputs, &scope.device.limits());
     let picture = ParamsUniform::new(params, scope.size);
@@ -218,17 +232,24 @@ pub(crate) fn passes(
             passes.push(sums.add(programs, scope, &buffers, batch, &picture));
         }
     }
-    if let Some((programs, sums)) = &surface {
-        passes.push(sums.resolve(programs, scope, &buffers));
-    }
+    let visibility = surface.map(|(programs, sums)| {
+        let (pass, visibility) = sums.resolve(programs, scope, &buffers);
+        passes.push(pass);
+        visibility
+    });
     let resources = [
         buffers.light.batches.binding(0),
         buffers.params.as_entire_binding(),
         buffers.sums.as_entire_binding(),
     ];
-    passes.push(scope.full_screen(&programs.resolve, "resolve", &resources));
-    count(scope, &passes, u64::from(samples));
-    passes
+    let last = scope.full_screen(&programs.resolve, "resolve", &resources);
+    count(scope, &passes, &last, u64::from(samples));
+    LightPasses {
+        before: passes,
+        last,
+        witness: None,
+        visibility,
+    }
 }
 
 /// The voxels of a batch.
@@ -295,7 +316,7 @@ fn grids(params: &Params, area: &AreaLight, scope: &LightScope<'_>) -> Vec<Epipo
             ..EpipolarUniform::NONE
         };
         EpipolarGrid::new(&scene, &resolution).map_or(none, |grid| {
-            grid.in_rows(&scene, params.resolution).uniform(1)
+            EpipolarUniform::new(&grid.in_rows(&scene, params.resolution), 1)
         })
     };
     area.positions.par_iter().map(grid).collect()
@@ -309,11 +330,12 @@ fn maps(params: &Params, samples: u32, inputs: &LightInputs<'_>, limits: &wgpu::
 }
 
 /// Passes, dispatches and samples of the light.
-fn count(scope: &mut LightScope<'_>, passes: &[Pass], samples: u64) {
-    let dispatches: usize = passes.iter().map(Pass::parts).sum();
+fn count(scope: &mut LightScope<'_>, before: &[Pass], last: &Pass, samples: u64) {
+    let passes = || before.iter().chain([last]);
+    let dispatches: usize = passes().map(Pass::parts).sum();
     for (name, value) in [
         ("samples", samples),
-        ("passes", passes.len() as u64),
+        ("passes", passes().count() as u64),
         ("dispatches and draws", dispatches as u64),
     ] {
         scope.count(name, CountValue::Known(value));
@@ -321,17 +343,18 @@ fn count(scope: &mut LightScope<'_>, passes: &[Pass], samples: u64) {
 }
 
 /// Refuses what the device cannot bind.
-pub(crate) fn check(
-    params: &Params,
-    limits: &wgpu::Limits,
-    size: [u32; 2],
-    index: usize,
-    inputs: &LightInputs<'_>,
-) -> Result<(), PrepareError> {
+fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+    let LightRequest {
+        limits,
+        size,
+        index,
+        inputs,
+        ..
+    } = *request;
     let pixels = ParamsUniform::new(params, size).pixels();
     let others = [
         ("voxels of a sample", voxels::bytes(params.resolution)),
         ("gathered light", 16 * pixels),
     ];
-    maps(params, 1, inputs, limits).check(super::INFO.name, index, limits, &others)
+    maps(params, 1, inputs, limits).check(INFO.name, index, limits, &others)
 }

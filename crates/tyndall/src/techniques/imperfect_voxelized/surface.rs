@@ -2,16 +2,18 @@
 
 use super::gpu::{Buffers, FILTER, PARAMS, ParamsUniform, SAMPLES, batch_entries};
 use crate::{
-    effect::SurfaceShadows,
-    epipolar::gpu::EPIPOLAR,
     gpu::{
         layout,
         pass::{Pass, Work},
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
     },
-    shadow::imperfect::gpu::{BatchUniform, IMPERFECT, LOOKUP},
-    voxels::gpu::VOXELS,
+    inputs::SurfaceShadows,
+    passes::{
+        epipolar::EPIPOLAR,
+        imperfect::gpu::{BatchUniform, IMPERFECT, LOOKUP},
+        voxels::gpu::VOXELS,
+    },
 };
 
 /// Pixels that a workgroup of `surface.wgsl` takes.
@@ -110,7 +112,7 @@ impl Sums {
         programs: &Programs,
         scope: &mut LightScope<'_>,
         buffers: &Buffers,
-    ) -> Pass {
+    ) -> (Pass, wgpu::TextureView) {
         let resources = [
             buffers.light.batches.binding(0),
             buffers.params.as_entire_binding(),
@@ -128,10 +130,11 @@ impl Sums {
             | wgpu::TextureUsages::COPY_SRC;
         let target = scope.texture("visibility from surfaces", size, 1, FORMAT, usage);
         let target = target.create_view(&wgpu::TextureViewDescriptor::default());
-        scope.visibility = Some(target.clone());
-        Pass {
+        let draw = scope.draw(&programs.resolve, &resources, target.clone());
+        let pass = Pass {
             name: scope.pass_name("resolve surfaces"),
-            work: Work::FullScreen(vec![scope.draw(&programs.resolve, &resources, target)]),
-        }
+            work: Work::FullScreen(vec![draw]),
+        };
+        (pass, target)
     }
 }

@@ -3,25 +3,34 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Params;
+use super::{
+    params::{INFO, Params},
+    rectified::Row,
+    view::{EpipolarView, InSlice},
+};
 use crate::{
     camera::Ray,
-    cpu::{CpuLight, CpuScene, RayIntegrator, stretches::integrate_lit},
-    epipolar::{
-        EpipolarFrame,
-        low_rank::LowRank,
-        rectified::Row,
-        view::{EpipolarView, InSlice},
-    },
+    epipolar::{EpipolarFrame, low_rank::LowRank},
     error::PrepareError,
+    integrate::{CpuLight, CpuScene, RayIntegrator, stretches::integrate_lit},
     light::LightModel,
     physics::medium::Optics,
+    techniques::method::CpuMethod,
 };
 
 /// Relative error of the quadrature of rays that are walked.
 const TOLERANCE: f64 = 1e-3;
 
-pub(crate) fn integrator<'a>(
+impl CpuMethod for Params {
+    fn integrator<'a>(
+        &'a self,
+        scene: &'a CpuScene<'a>,
+    ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
+        integrator(self, scene)
+    }
+}
+
+fn integrator<'a>(
     params: &Params,
     scene: &'a CpuScene<'a>,
 ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
@@ -29,7 +38,7 @@ pub(crate) fn integrator<'a>(
     for light in &scene.lights {
         if light.models.iter().any(|m| !m.is_plain()) {
             return Err(PrepareError::Unsupported {
-                technique: super::INFO.name,
+                technique: INFO.name,
                 what: "light textures".into(),
             });
         }

@@ -24,62 +24,17 @@
 //! gamma; orthographic cameras are walked; and the integrand must be a short sum of products: cones and pictures depend on the
 //! slice, and are refused. Rays that coloured glass tints are walked through the shadow map.
 
-pub(crate) mod cpu;
+mod cpu;
+mod params;
+mod rectified;
+mod view;
 
-use super::{
-    Backends, LightKind, Technique, TechniqueInfo,
-    params::{Param, Parameters, Sliced, Slicing, param},
-};
-use crate::epipolar::Resolution;
+pub use params::*;
 
-/// The entry in the table.
-pub(super) const INFO: TechniqueInfo = TechniqueInfo {
-    name: "incremental",
-    about: "partial sums per epipolar slice, view rays in order of their angle",
-    citation: "Baran, Chen, Ragan-Kelley, Durand & Lehtinen, A Hierarchical Volumetric Shadow Algorithm for Single Scattering, SIGGRAPH Asia 2010",
-    lights: &[LightKind::Directional, LightKind::Point],
-    backends: Backends::Cpu,
-    default: || Technique::Incremental(Params::default()),
-};
+use crate::techniques::method::{CpuMethod, Method};
 
-/// Parameters of `incremental`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// Products in the low-rank sum (1 to 16).
-    pub rank: u32,
-    /// Slices and samples.
-    pub resolution: Resolution,
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self {
-            rank: 4,
-            resolution: Resolution {
-                epipole_radius: 6.0,
-                ..Resolution::default()
-            },
-        }
+impl Method for Params {
+    fn cpu(&self) -> Option<&dyn CpuMethod> {
+        Some(self)
     }
-}
-
-impl Sliced for Params {
-    const SLICES: &'static str = "epipolar slices; 0: every ray within half a pixel of one, and no fewer than the map's texels a side";
-    const SAMPLES: &'static str = "light rays a slice; 0: the shadow map's texels a side";
-
-    fn resolution(&self) -> &Resolution {
-        &self.resolution
-    }
-
-    fn resolution_mut(&mut self) -> &mut Resolution {
-        &mut self.resolution
-    }
-}
-
-impl Parameters for Params {
-    const TECHNIQUE: &'static str = INFO.name;
-    const PARAMS: &'static [&'static [Param<Self>]] = &[
-        &[param!(whole rank, 1..=16, "products in the low-rank sum")],
-        Slicing::<Self>::PARAMS,
-    ];
 }

@@ -88,7 +88,7 @@ impl Extent {
 fn light_position(emitter: &Emitter) -> Option<DVec3> {
     match *emitter {
         Emitter::Point { position, .. } | Emitter::Spot { position, .. } => {
-            Some(crate::physics::medium::reals(position))
+            Some(crate::physics::reals(position))
         }
         Emitter::Directional { .. } | Emitter::Rect { .. } => None,
     }

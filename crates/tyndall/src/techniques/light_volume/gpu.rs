@@ -6,22 +6,22 @@ use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 
 use super::{
-    Params,
     extent::Extent,
+    params::{INFO, Params},
     tessellation::{Square, Step},
 };
 use crate::{
-    effect::{CountValue, LightInputs},
     error::PrepareError,
-    frame::{Light, ShadowProjection},
+    frame::ShadowProjection,
     gpu::{
-        layout,
-        pass::{Pass, Vertices, Work},
+        cache, layout,
+        pass::{LightPasses, Pass, Vertices, Work},
         program::{ComputeProgram, Raster, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, STRETCH},
     },
-    validate::faces,
+    inputs::CountValue,
+    techniques::method::{GpuMethod, LightRequest},
 };
 
 pub(crate) const CUBE: &str = include_str!("cube.wgsl");
@@ -66,8 +66,8 @@ pub(crate) struct Programs {
     sum: wgpu::TextureFormat,
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let sum = sum_format(device.features());
         let surface = |label, vertex, topology| {
             let raster = Raster {
@@ -170,12 +170,20 @@ fn sum_format(features: wgpu::Features) -> wgpu::TextureFormat {
     }
 }
 
+impl GpuMethod for Params {
+    fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+        check(self, request)
+    }
+
+    fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
+        passes(self, scope)
+    }
+}
+
 /// The passes of one light.
-pub(crate) fn passes(
-    params: &Params,
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
+fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
     let airlight = scope.airlight();
     let mut passes = Vec::new();
     let mut sum = scope.shared.absent.light.clone();
@@ -199,24 +207,25 @@ pub(crate) fn passes(
         wgpu::BindingResource::TextureView(&airlight),
         panes.as_entire_binding(),
     ];
-    passes.push(scope.full_screen(&programs.resolve, "light volume resolve", &resources));
-    passes
+    let last = scope.full_screen(&programs.resolve, "light volume resolve", &resources);
+    LightPasses::new(passes, last)
 }
 
 /// The most texels a side that a triangle's name has bits for.
 const MAX_SIDE: u32 = 4096;
 
 /// Refuses what the mesh cannot hold.
-pub(crate) fn check(
-    params: &Params,
-    limits: &wgpu::Limits,
-    index: usize,
-    light: &Light,
-    inputs: &LightInputs<'_>,
-) -> Result<(), PrepareError> {
+fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+    let LightRequest {
+        limits,
+        index,
+        light,
+        inputs,
+        ..
+    } = *request;
     let refuse = |what: String| {
         Err(PrepareError::Unsupported {
-            technique: super::INFO.name,
+            technique: INFO.name,
             what: format!("{what} (lights[{index}])"),
         })
     };
@@ -242,7 +251,7 @@ pub(crate) fn check(
     {
         return refuse("a shadow projection without an inverse".into());
     }
-    let bytes = Square::of_map(size).splits_bytes(faces(light));
+    let bytes = Square::of_map(size).splits_bytes(light.faces());
     if params.tolerance > 0.0 && bytes > limits.max_storage_buffer_binding_size {
         return refuse(format!(
             "merging within `max_storage_buffer_binding_size` {}, for the map takes {bytes} bytes",
@@ -283,7 +292,7 @@ fn panes(programs: &Programs, scope: &mut LightScope<'_>, passes: &mut Vec<Pass>
         [
             side(texture.width()),
             side(texture.height()),
-            faces(scope.light),
+            scope.light.faces(),
         ]
     });
     let count: u64 = blocks.unwrap_or([1; 3]).map(u64::from).iter().product();
@@ -479,7 +488,7 @@ mod tests {
     use crate::{
         CountValue, Effect, EffectOptions, FrameInputs, LightInputs, OutputPrecision,
         frame::{Camera, Emitter, Frame, Light, Medium, ShadowProjection},
-        techniques::Technique,
+        techniques::{Technique, TechniqueChoice},
     };
 
     /// A depth texture that holds 0.5 everywhere.
@@ -555,8 +564,8 @@ mod tests {
             medium: Medium {
                 components: Vec::new(),
             },
-            technique: Technique::LightVolume(super::Params::default()),
         };
+        let techniques = TechniqueChoice::from(Technique::LightVolume(super::Params::default()));
         for size in [[64, 64], [100, 60]] {
             let map = flat(device, queue, size);
             let twin = Face::new(size.map(|n| n + 1), 0.0, 0).triangles().len() as u32;
@@ -580,7 +589,7 @@ mod tests {
                     lights: &[light],
                 };
                 effect
-                    .prepare(device, queue, &mut view, &inputs, &frame)
+                    .prepare(device, queue, &mut view, &inputs, &frame, &techniques)
                     .expect("a good frame");
                 let listing = |pass: &super::Pass| pass.name.contains("tessellation");
                 assert_eq!(view.passes().iter().any(listing), is_listed, "{revision:?}");

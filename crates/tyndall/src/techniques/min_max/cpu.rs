@@ -3,32 +3,37 @@
 use glam::DVec3;
 
 use super::{
-    Integrator, Params,
-    svd::{self, SvdRay},
+    params::{Integrator, Params},
+    svd::{self, SvdRay, TOLERANCE},
 };
 use crate::{
     camera::Ray,
-    cpu::{
-        CpuLight, CpuScene, RayIntegrator, Shade,
-        stretches::{Integral, sum_lit},
-    },
     epipolar::{
         cells,
         grid::{EpipolarGrid, GridRay, GridScene},
         low_rank::LowRank,
         tree::{MinMaxTree, Run},
     },
+    error::PrepareError,
+    integrate::{
+        CpuLight, CpuScene, RayIntegrator,
+        stretches::{Integral, sum_lit},
+    },
     light::LightModel,
-    shadow::walk::RayOnMap,
+    shadow::{Shade, walk::RayOnMap},
+    techniques::method::CpuMethod,
 };
 
-/// Relative error of the quadrature of a lit stretch, where it has no closed form.
-pub(super) const TOLERANCE: f64 = 1e-3;
+impl CpuMethod for Params {
+    fn integrator<'a>(
+        &'a self,
+        scene: &'a CpuScene<'a>,
+    ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
+        Ok(integrator(self, scene))
+    }
+}
 
-pub(crate) fn integrator<'a>(
-    params: &'a Params,
-    scene: &'a CpuScene<'a>,
-) -> Box<dyn RayIntegrator + 'a> {
+fn integrator<'a>(params: &'a Params, scene: &'a CpuScene<'a>) -> Box<dyn RayIntegrator + 'a> {
     let of_light = |light| Forest::new(params, scene, light);
     Box::new(MinMax {
         scene,

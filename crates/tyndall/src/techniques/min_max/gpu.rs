@@ -1,27 +1,32 @@
 //! The GPU side: the shadow map's pyramid, the rectified trees, and the pass that traverses them.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 
-use super::{Integrator, Params, Show, svd};
+use super::{
+    params::{INFO, Integrator, Params, Show},
+    svd,
+};
 use crate::{
-    effect::LightInputs,
-    epipolar::{
-        gpu::{EPIPOLAR, EpipolarUniform, with_scene},
-        grid::EpipolarGrid,
-    },
+    epipolar::grid::EpipolarGrid,
     error::PrepareError,
     frame::{Emitter, Light},
     gpu::{
-        layout, limits,
-        pass::Pass,
+        cache, layout, limits,
+        pass::{LightPasses, Pass},
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, STRETCH},
     },
+    inputs::LightInputs,
+    passes::{
+        epipolar::{EPIPOLAR, EpipolarUniform, with_scene},
+        pyramid::{self, PYRAMID, Source},
+    },
     physics::medium::Optics,
-    shadow::pyramid::{self, PYRAMID, Source},
-    temporal::Reach,
-    validate,
+    techniques::Reach,
+    techniques::method::{GpuMethod, LightRequest},
 };
 
 pub(crate) const TREE: &str = include_str!("tree.wgsl");
@@ -58,7 +63,7 @@ pub(crate) struct SvdUniform {
 
 /// The technique's shaders.
 pub(crate) struct Programs {
-    pyramid: pyramid::Programs,
+    pyramid: Arc<pyramid::Programs>,
     rectify: ComputeProgram,
     rectify_glass: ComputeProgram,
     /// Of the analytic and of the svd integrator.
@@ -67,8 +72,8 @@ pub(crate) struct Programs {
     show: ScreenProgram,
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let rectify = || {
             let own = [
                 layout::uniform::<EpipolarUniform>(0),
@@ -116,7 +121,7 @@ impl Programs {
         let show = [traversal, &[TRAVERSE, SHOW]].concat();
         let show_own = [&own[..], &[layout::uniform::<[u32; 4]>(7)]].concat();
         Self {
-            pyramid: pyramid::Programs::new(device, shared),
+            pyramid: shared.programs(device),
             rectify: rectify(),
             rectify_glass: rectify().with("RECTIFY_GLASS", 1.0),
             tint_rows: [0.0, 1.0].map(|svd| tint_rows().with("SVD", svd)),
@@ -126,16 +131,28 @@ impl Programs {
     }
 }
 
+impl GpuMethod for Params {
+    fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+        check(self, request)
+    }
+
+    fn reach(&self) -> Reach {
+        reach(self)
+    }
+
+    fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
+        passes(self, scope)
+    }
+}
+
 /// The passes of one light.
-pub(crate) fn passes(
-    params: &Params,
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
+fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
     let grid = grid(params, scope);
     let is_svd = params.integrator == Integrator::Svd;
     let epipolar = grid.map_or(EpipolarUniform::NONE, |grid| {
-        grid.uniform(tint_columns(params, grid.samples))
+        EpipolarUniform::new(&grid, tint_columns(params, grid.samples))
     });
     let uniform = scope.uniform("epipolar grid", &epipolar);
     let rows = tint_rows(params, scope.light, &scope.inputs);
@@ -177,23 +194,23 @@ pub(crate) fn passes(
         svd.as_entire_binding(),
         svd_factors.as_entire_binding(),
     ];
-    if params.show == Show::Light {
+    let last = if params.show == Show::Light {
         let program = &programs.traverse[usize::from(is_svd)];
-        passes.push(scope.full_screen(program, "traverse", &resources));
+        scope.full_screen(program, "traverse", &resources)
     } else {
         let what = scope.uniform("show", &[params.show as u32, 0, 0, 0]);
         let resources = [&resources[..], &[what.as_entire_binding()]].concat();
-        passes.push(scope.full_screen(&programs.show, "show", &resources));
-    }
-    passes
+        scope.full_screen(&programs.show, "show", &resources)
+    };
+    LightPasses::new(passes, last)
 }
 
 /// How far from its ray a pixel looks: at the slice beside it, which is half a pixel off at most, unless the slices are
 /// given by hand.
-pub(crate) fn reach(params: &Params) -> Reach {
+fn reach(params: &Params) -> Reach {
     match params.resolution.slices {
         0 => Reach::Pixels(1.0),
-        _ => Reach::Picture,
+        _ => Reach::Image,
     }
 }
 
@@ -218,13 +235,14 @@ fn tint_rows(params: &Params, light: &Light, inputs: &LightInputs<'_>) -> Option
 }
 
 /// Refuses a light whose buffers would be larger than the device binds.
-pub(crate) fn check(
-    params: &Params,
-    limits: &wgpu::Limits,
-    index: usize,
-    light: &Light,
-    inputs: &LightInputs<'_>,
-) -> Result<(), PrepareError> {
+fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+    let LightRequest {
+        limits,
+        index,
+        light,
+        inputs,
+        ..
+    } = *request;
     let side = inputs
         .shadow_map
         .map_or(1, |map| map.texture().width().max(map.texture().height()));
@@ -238,7 +256,7 @@ pub(crate) fn check(
     let bytes = Bytes::new(&grid, inputs, tint_rows(params, light, inputs));
     limits::check_storage(
         limits,
-        &format!("technique `{}` (lights[{index}])", super::INFO.name),
+        &format!("technique `{}` (lights[{index}])", INFO.name),
         &[
             ("slices x samples", bytes.nodes),
             ("slices x samples of its picture", bytes.tint_sums),
@@ -282,7 +300,7 @@ fn rectify(
     grid: &EpipolarUniform,
     nodes: &wgpu::Buffer,
 ) -> [Pass; 2] {
-    let faces = validate::faces(scope.light);
+    let faces = scope.light.faces();
     let (pyramid, build) = pyramid::build(&programs.pyramid, scope, source, size, faces);
     let (program, name) = match source {
         Source::ShadowMap => (&programs.rectify, "shadow trees"),

@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{INFO, Integrator, Params, cpu::TOLERANCE};
+use super::params::{INFO, Integrator, Params};
 use crate::{
     camera::Ray,
     epipolar::{
@@ -24,9 +24,12 @@ use crate::{
     },
     error::PrepareError,
     frame::{Camera, Projection},
-    light::{LIGHT_RADIUS, LightModel},
-    physics::{medium::Optics, quadrature::quadrature},
+    light::LightModel,
+    physics::{LIGHT_RADIUS, medium::Optics, quadrature::quadrature},
 };
+
+/// Relative error of the quadrature of a lit stretch, where it has no closed form.
+pub(super) const TOLERANCE: f64 = 1e-3;
 
 /// K is a function of the angle to an axis through the eye, and an orthographic camera has no eye.
 pub(crate) fn check(params: &Params, camera: &Camera) -> Result<(), PrepareError> {

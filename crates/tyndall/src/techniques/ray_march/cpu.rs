@@ -2,23 +2,33 @@
 
 use glam::DVec3;
 
-use super::{Params, Spacing};
+use super::params::{INFO, Params, Spacing};
 use crate::{
     camera::Ray,
-    cpu::{CpuLight, CpuScene, RayIntegrator},
     error::PrepareError,
-    light::{LIGHT_RADIUS, LightModel},
-    physics::medium::Optics,
+    integrate::{CpuLight, CpuScene, RayIntegrator, integrand},
+    light::LightModel,
+    physics::LIGHT_RADIUS,
+    techniques::method::CpuMethod,
 };
 
-pub(crate) fn integrator<'a>(
+impl CpuMethod for Params {
+    fn integrator<'a>(
+        &'a self,
+        scene: &'a CpuScene<'a>,
+    ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
+        integrator(self, scene)
+    }
+}
+
+fn integrator<'a>(
     params: &'a Params,
     scene: &'a CpuScene<'a>,
 ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
     let is_area = |light: &CpuLight<'_>| light.models.iter().any(LightModel::is_of_area);
     if let Some(index) = scene.lights.iter().position(is_area) {
         return Err(PrepareError::Unsupported {
-            technique: super::INFO.name,
+            technique: INFO.name,
             what: format!("rect lights on the CPU (lights[{index}])"),
         });
     }
@@ -61,13 +71,6 @@ impl RayMarch<'_> {
         }
         sum
     }
-}
-
-/// Chen 2011, eq. 1, without visibility: `exp(-sigma_t s) sigma_s rho(theta) L_in(s)` [W/(m^3 sr)].
-pub(crate) fn integrand(ray: &Ray, s: f64, model: &LightModel<'_>, optics: &Optics) -> DVec3 {
-    let incident = model.incident(ray.at(s), optics);
-    let cos_theta = -incident.direction.dot(ray.direction);
-    optics.transmittance(s) * optics.scattering(cos_theta) * incident.irradiance
 }
 
 /// Where the samples lie on a ray.

@@ -1,21 +1,24 @@
 //! The GPU side: one full-screen pass a light, `ray_march.wgsl`; of a rectangular light maps of its samples, a pass that
 //! marches all of a batch, and one that writes the output.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 
-use super::{INFO, Params, Spacing};
+use super::params::{INFO, Params, Spacing};
 use crate::{
-    effect::LightInputs,
     error::PrepareError,
-    frame::{Emitter, Light},
+    frame::Emitter,
     gpu::{
-        layout,
-        pass::Pass,
+        cache, layout,
+        pass::LightPasses,
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
         shader::MARCH,
     },
-    shadow::imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
+    passes::imperfect::gpu::{self as imperfect, AreaLight, BatchUniform, IMPERFECT, LOOKUP, Maps},
+    techniques::info::Reach,
+    techniques::method::{GpuMethod, LightRequest},
 };
 
 /// What a step reads.
@@ -56,13 +59,13 @@ impl ParamsUniform {
 /// The technique's shaders.
 pub(crate) struct Programs {
     march: ScreenProgram,
-    maps: imperfect::Programs,
+    maps: Arc<imperfect::Programs>,
     march_area: ComputeProgram,
     resolve: ScreenProgram,
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let modules = [MARCH, PARAMS, RAY_MARCH];
         let own = [layout::uniform::<ParamsUniform>(0)];
         let march = ScreenProgram::new(device, shared, "ray march", &modules, "ray_march", &own);
@@ -89,25 +92,40 @@ impl Programs {
         );
         Self {
             march,
-            maps: imperfect::Programs::new(device, shared),
+            maps: shared.programs(device),
             march_area,
             resolve,
         }
     }
 }
 
+impl GpuMethod for Params {
+    fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+        check(self, request)
+    }
+
+    fn reach(&self) -> Reach {
+        Reach::Pixels(0.0)
+    }
+
+    fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
+        passes(self, scope)
+    }
+}
+
 /// The passes of one light.
-pub(crate) fn passes(
-    params: &Params,
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
+fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
     let uniform = scope.uniform("ray march params", &ParamsUniform::new(params));
     match AreaLight::new(&scope.light.emitter) {
         Some(area) => march_area(params, programs, scope, &area, &uniform),
         None => {
             let resources = [uniform.as_entire_binding()];
-            vec![scope.full_screen(&programs.march, "ray march", &resources)]
+            LightPasses::new(
+                Vec::new(),
+                scope.full_screen(&programs.march, "ray march", &resources),
+            )
         }
     }
 }
@@ -118,7 +136,7 @@ fn march_area(
     scope: &mut LightScope<'_>,
     area: &AreaLight,
     uniform: &wgpu::Buffer,
-) -> Vec<Pass> {
+) -> LightPasses {
     let (count, limits) = (area.positions.len() as u32, scope.device.limits());
     let at_once = count.min((MOST_STEPS / params.steps).max(1));
     let maps = Maps::new(&scope.inputs, params.points, at_once, 0, &limits);
@@ -141,8 +159,10 @@ fn march_area(
         passes.push(scope.compute(&programs.march_area, "ray march", &resources, [x, y, 1]));
     }
     let resources = [sums.as_entire_binding()];
-    passes.push(scope.full_screen(&programs.resolve, "resolve", &resources));
-    passes
+    LightPasses::new(
+        passes,
+        scope.full_screen(&programs.resolve, "resolve", &resources),
+    )
 }
 
 fn sums_bytes(size: [u32; 2]) -> u64 {
@@ -150,14 +170,14 @@ fn sums_bytes(size: [u32; 2]) -> u64 {
 }
 
 /// Refuses a rectangular light whose buffers the device cannot bind.
-pub(crate) fn check(
-    params: &Params,
-    limits: &wgpu::Limits,
-    size: [u32; 2],
-    index: usize,
-    light: &Light,
-    inputs: &LightInputs<'_>,
-) -> Result<(), PrepareError> {
+fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+    let LightRequest {
+        limits,
+        size,
+        index,
+        light,
+        inputs,
+    } = *request;
     if !matches!(light.emitter, Emitter::Rect { .. }) {
         return Ok(());
     }

@@ -2,15 +2,26 @@
 
 use glam::DVec3;
 
-use super::{Params, Visibility};
+use super::params::{Params, Visibility};
 use crate::{
     camera::Ray,
-    cpu::{CpuLight, CpuScene, Occluders, RayIntegrator, Shade, stretches::integrate_lit},
     error::PrepareError,
+    integrate::{CpuLight, CpuScene, RayIntegrator, stretches::integrate_lit},
     light::LightModel,
+    shadow::{Occluders, Shade},
+    techniques::method::CpuMethod,
 };
 
-pub(crate) fn integrator<'a>(
+impl CpuMethod for Params {
+    fn integrator<'a>(
+        &'a self,
+        scene: &'a CpuScene<'a>,
+    ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
+        integrator(self, scene)
+    }
+}
+
+fn integrator<'a>(
     params: &'a Params,
     scene: &'a CpuScene<'a>,
 ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {

@@ -13,69 +13,14 @@
 //! have a shadow map.
 
 pub(crate) mod cpu;
+mod params;
 
-use super::{
-    Backends, LightKind, Technique, TechniqueInfo,
-    params::{Param, Parameters, param},
-};
+pub use params::*;
 
-/// The entry in the table.
-pub(super) const INFO: TechniqueInfo = TechniqueInfo {
-    name: "reference",
-    about: "the oracle: exact visibility and f64 quadrature to a stated tolerance",
-    citation: "lit segments: Max, Atmospheric Illumination and Shadows, SIGGRAPH 1986; quadrature: Piessens et al., QUADPACK, 1983",
-    lights: &[
-        LightKind::Directional,
-        LightKind::Point,
-        LightKind::Spot,
-        LightKind::Rect,
-    ],
-    backends: Backends::Cpu,
-    default: || Technique::Reference(Params::DEFAULT),
-};
+use crate::techniques::method::{CpuMethod, Method};
 
-/// Parameters of `reference`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// Largest relative error of the quadrature of a lit stretch (1e-9 to 0.1).
-    pub tolerance: f64,
-    /// Where visibility comes from.
-    pub visibility: Visibility,
-}
-
-/// Where the reference takes visibility from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Visibility {
-    /// From the scene's triangles.
-    Traced,
-    /// From the shadow map, texel by texel.
-    ShadowMap,
-}
-
-const VISIBILITIES: &[(&str, Visibility)] = &[
-    ("traced", Visibility::Traced),
-    ("shadow-map", Visibility::ShadowMap),
-];
-
-impl Params {
-    const DEFAULT: Self = Self {
-        tolerance: 1e-3,
-        visibility: Visibility::Traced,
-    };
-}
-
-impl Default for Params {
-    fn default() -> Self {
-        Self::DEFAULT
+impl Method for Params {
+    fn cpu(&self) -> Option<&dyn CpuMethod> {
+        Some(self)
     }
-}
-
-impl Parameters for Params {
-    const TECHNIQUE: &'static str = INFO.name;
-    const PARAMS: &'static [&'static [Param<Self>]] = &[&[
-        param!(real tolerance, 1e-9..=0.1, "largest relative error of the quadrature of a lit stretch"),
-        param!(choice visibility, VISIBILITIES,
-            "from the scene's triangles, or from the shadow map texel by texel",
-            "\"traced\" or \"shadow-map\""),
-    ]];
 }

@@ -1,22 +1,24 @@
 //! The GPU side: voxels of the shadow map, their scan, and the pass that gathers.
 
-use super::Params;
+use std::sync::Arc;
+
+use super::params::{INFO, Params};
 use crate::{
-    epipolar::{
-        Resolution,
-        gpu::{EPIPOLAR, EpipolarUniform, with_scene},
-        grid::EpipolarGrid,
-    },
+    epipolar::{Resolution, grid::EpipolarGrid},
     error::PrepareError,
     gpu::{
-        fill::Fill,
-        layout, limits,
-        pass::Pass,
+        cache, layout, limits,
+        pass::{LightPasses, Pass},
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
         shader::{AIRLIGHT, STRETCH},
     },
-    voxels::gpu::{self as voxels, RUNS, Scan, VOXELS},
+    passes::{
+        epipolar::{EPIPOLAR, EpipolarUniform, with_scene},
+        fill::Fill,
+        voxels::gpu::{self as voxels, RUNS, Scan, VOXELS},
+    },
+    techniques::method::{GpuMethod, LightRequest},
 };
 
 const LIGHT_RAY: &str = include_str!("light_ray.wgsl");
@@ -28,14 +30,14 @@ const RAYS_A_WORKGROUP: u32 = 64;
 
 /// The technique's shaders.
 pub(crate) struct Programs {
-    fill: Fill,
-    scan: Scan,
+    fill: Arc<Fill>,
+    scan: Arc<Scan>,
     voxelize: ComputeProgram,
     gather: ScreenProgram,
 }
 
-impl Programs {
-    pub(crate) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+impl cache::Programs for Programs {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let own = [
             layout::uniform::<EpipolarUniform>(0),
             layout::storage(1, false),
@@ -49,27 +51,35 @@ impl Programs {
         ];
         let modules = [AIRLIGHT, STRETCH, EPIPOLAR, VOXELS, RUNS, LIGHT_RAY, GATHER];
         Self {
-            fill: Fill::new(device, shared),
-            scan: Scan::new(device, shared),
+            fill: shared.programs(device),
+            scan: shared.programs(device),
             voxelize,
             gather: ScreenProgram::new(device, shared, "gather", &modules, "gather", &own),
         }
     }
 }
 
+impl GpuMethod for Params {
+    fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+        check(self, request)
+    }
+
+    fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
+        passes(self, scope)
+    }
+}
+
 /// The passes of one light.
-pub(crate) fn passes(
-    params: &Params,
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-) -> Vec<Pass> {
+fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
+    let programs = scope.programs::<Programs>();
+    let programs = programs.as_ref();
     let side = params.resolution;
     let grid = grid(params, scope);
     let none = EpipolarUniform {
         samples: side,
         ..EpipolarUniform::NONE
     };
-    let epipolar = grid.map_or(none, |grid| grid.uniform(1));
+    let epipolar = grid.map_or(none, |grid| EpipolarUniform::new(&grid, 1));
     let uniform = scope.uniform("epipolar grid", &epipolar);
     let has_voxels = grid.is_some() && scope.inputs.shadow_map.is_some();
     let bytes = if has_voxels { voxels::bytes(side) } else { 16 };
@@ -92,8 +102,10 @@ pub(crate) fn passes(
         bits.as_entire_binding(),
         wgpu::BindingResource::TextureView(&airlight),
     ];
-    passes.push(scope.full_screen(&programs.gather, "gather", &resources));
-    passes
+    LightPasses::new(
+        passes,
+        scope.full_screen(&programs.gather, "gather", &resources),
+    )
 }
 
 fn grid(params: &Params, scope: &LightScope<'_>) -> Option<EpipolarGrid> {
@@ -108,11 +120,11 @@ fn grid(params: &Params, scope: &LightScope<'_>) -> Option<EpipolarGrid> {
 }
 
 /// Refuses voxels that the device cannot bind.
-pub(crate) fn check(
-    params: &Params,
-    limits: &wgpu::Limits,
-    index: usize,
-) -> Result<(), PrepareError> {
-    let of = format!("technique `{}` (lights[{index}])", super::INFO.name);
-    limits::check_storage(limits, &of, &[("voxels", voxels::bytes(params.resolution))])
+fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), PrepareError> {
+    let of = format!("technique `{}` (lights[{}])", INFO.name, request.index);
+    limits::check_storage(
+        request.limits,
+        &of,
+        &[("voxels", voxels::bytes(params.resolution))],
+    )
 }

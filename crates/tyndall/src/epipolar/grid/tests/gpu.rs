@@ -9,17 +9,17 @@ use wgpu::util::{DeviceExt, TextureDataOrder};
 
 use super::*;
 use crate::{
-    epipolar::gpu::EPIPOLAR,
     frame::{Frame, Medium},
     gpu::{
         shader::{CHOICE, CHOICE_ALONE, FRAME_MODULES, LIGHT_MODULES},
         uniforms::{FrameUniform, LightUniform, LightVariant},
     },
-    shadow::{depths::DepthRanges, pyramid::PYRAMID},
-    techniques::{
-        Technique,
-        min_max::gpu::{RECTIFY, TREE},
+    passes::{
+        epipolar::{EPIPOLAR, EpipolarUniform},
+        pyramid::PYRAMID,
     },
+    shadow::depths::DepthRanges,
+    techniques::min_max::gpu::{RECTIFY, TREE},
 };
 
 /// A case's uniform blocks.
@@ -38,7 +38,6 @@ impl Blocks {
             medium: Medium {
                 components: Vec::new(),
             },
-            technique: Technique::default(),
         };
         let rays = case.rays();
         let (light, variant) = LightUniform::new(&case.light, rays.eye, false);
@@ -53,7 +52,7 @@ impl Blocks {
         Self {
             frame: uniform(bytes_of(&FrameUniform::new(&frame, &rays, SIZE))),
             light: uniform(bytes_of(&light)),
-            grid: uniform(bytes_of(&grid.uniform(64))),
+            grid: uniform(bytes_of(&EpipolarUniform::new(grid, 64))),
             variant,
         }
     }

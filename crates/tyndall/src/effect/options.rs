@@ -1,0 +1,48 @@
+//! What an effect is created with, and why it may not be.
+
+/// What is fixed for the life of an [`Effect`].
+#[derive(Clone, Copy, Debug)]
+pub struct EffectOptions {
+    /// Format of the colour target that [`Effect::composite`] draws on; must be blendable.
+    pub target_format: wgpu::TextureFormat,
+    /// Format of [`EffectView::output`].
+    pub output: OutputPrecision,
+}
+
+/// Format of the in-scattered light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputPrecision {
+    /// `Rgba16Float`, for pictures.
+    Half,
+    /// `Rgba32Float`, for measuring.
+    Full,
+}
+
+impl OutputPrecision {
+    pub(super) fn format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Half => wgpu::TextureFormat::Rgba16Float,
+            Self::Full => wgpu::TextureFormat::Rgba32Float,
+        }
+    }
+}
+
+/// Why an effect or a view of it could not be made.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CreateError {
+    /// The picture is empty or larger than the device's textures.
+    #[error("a view must be 1 to {limit} pixels a side, found {} x {}", size[0], size[1])]
+    Size {
+        /// What was asked for [pixels].
+        size: [u32; 2],
+        /// The device's limit [pixels].
+        limit: u32,
+    },
+    /// The device cannot blend the target's format.
+    #[error("the target format must be blendable on this device, found {format:?}")]
+    NotBlendable {
+        /// What was asked for.
+        format: wgpu::TextureFormat,
+    },
+}

@@ -1,0 +1,8 @@
+//! Meshes that block light.
+
+mod edges;
+mod error;
+mod occluder;
+
+pub use error::OccluderError;
+pub use occluder::{Occluder, OccluderMesh};

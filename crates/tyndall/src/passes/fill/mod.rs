@@ -1,0 +1,76 @@
+//! Buffers whose words are all set to one value.
+
+use crate::gpu::{
+    cache, layout,
+    pass::Dispatch,
+    program::ComputeProgram,
+    scope::{LightScope, Shared},
+};
+
+pub(crate) const FILL: &str = include_str!("fill.wgsl");
+
+/// The most workgroups a dimension may have on every device.
+const MAX_WORKGROUPS: u64 = 65_535;
+/// Words that a workgroup sets at least.
+const WORDS_A_WORKGROUP: u64 = 1024;
+
+/// A program that sets the words of a buffer.
+pub(crate) struct Fill(ComputeProgram);
+
+impl cache::Programs for Fill {
+    fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let own = [layout::uniform::<[u32; 4]>(0), layout::storage(1, false)];
+        let program = ComputeProgram::new(device, shared, "fill", &[FILL], "fill_words", &own);
+        Self(program.for_all_lights())
+    }
+}
+
+impl Fill {
+    /// Sets every word of a buffer, whose size is a multiple of 16 bytes; `name` is that of the value.
+    pub(crate) fn dispatch(
+        &self,
+        scope: &mut LightScope<'_>,
+        name: &'static str,
+        words: &wgpu::Buffer,
+        value: u32,
+    ) -> Dispatch {
+        let uniform = scope.uniform(name, &[value, 0, 0, 0]);
+        let groups = (words.size() / 4).div_ceil(WORDS_A_WORKGROUP);
+        let groups = [groups.clamp(1, MAX_WORKGROUPS) as u32, 1, 1];
+        let resources = [uniform.as_entire_binding(), words.as_entire_binding()];
+        scope.dispatch(&self.0, &resources, groups)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tyndall_testkit::{device::device_or_skip, wgsl};
+    use wgpu::util::DeviceExt;
+
+    #[test]
+    fn every_word_is_set() {
+        let Some(gpu) = device_or_skip("fill.wgsl") else {
+            return;
+        };
+        for (count, groups) in [(4, 1), (4 * 1000, 3)] {
+            let buffer = |contents: &[u8], usage| {
+                let init = wgpu::util::BufferInitDescriptor {
+                    label: None,
+                    contents,
+                    usage: usage | wgpu::BufferUsages::COPY_SRC,
+                };
+                gpu.device.create_buffer_init(&init)
+            };
+            let uniform = bytemuck::bytes_of(&[7_u32, 0, 0, 0]);
+            let uniform = buffer(uniform, wgpu::BufferUsages::UNIFORM);
+            let words = vec![1_u32; count];
+            let words = buffer(bytemuck::cast_slice(&words), wgpu::BufferUsages::STORAGE);
+            let bound = (2, &[&uniform, &words][..]);
+            wgsl::dispatch(gpu, &[FILL], "fill_words", &[], bound, [groups, 1, 1])
+                .expect("the shader runs");
+            let found: Vec<u32> = gpu.read_buffer(&words).expect("readable");
+            assert_eq!(found, vec![7; count]);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! What a view keeps of earlier frames, as plain data.
+
+/// What a view keeps of earlier frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reuse {
+    /// Frames in a row that keep what is not stale; then all pixels are computed. `None`: no limit.
+    pub frames: Option<u32>,
+    /// How stale pixels are found.
+    pub mask: ReuseMask,
+    /// What may be wrong with a pixel that is kept while the camera moves, over the brightest value about it (> 0); `None`: a
+    /// camera that moves makes all pixels stale.
+    pub reproject: Option<f32>,
+    /// What the picture shows.
+    pub show: ReuseShow,
+}
+
+/// How stale pixels are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReuseMask {
+    /// By comparing depth and shadow map with those of the frame before: exact.
+    Change,
+    /// By drawing moving occluders and their shadow volumes, as Lin 2012 does; every light needs its occluders.
+    Geometry,
+}
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReuseShow {
+    /// The in-scattered light.
+    Light,
+    /// The pixels that were computed, 1 a light, in red.
+    Mask,
+    /// How long ago each was: blue now, then from green to red in 32 frames; a sum over the lights.
+    Age,
+}
+
+impl Default for Reuse {
+    /// The exact mask, without a limit.
+    fn default() -> Self {
+        Self {
+            frames: None,
+            mask: ReuseMask::Change,
+            reproject: None,
+            show: ReuseShow::Light,
+        }
+    }
+}
