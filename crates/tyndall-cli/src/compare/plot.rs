@@ -9,7 +9,10 @@ use plotters::{
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use super::{ErrorMap, Report, error_map::FLOOR};
+use super::{
+    error_map::{ErrorMap, FLOOR},
+    report::Report,
+};
 use crate::measure::PictureError;
 
 /// Width and height of a plot [pixels].
@@ -25,7 +28,7 @@ const SERIES: &[RGBColor] = &[
     RGBColor(176, 124, 0),
     RGBColor(122, 111, 240),
 ];
-/// What the page recolours in its dark mode.
+/// Colour of lines and text, which the page replaces in its dark mode.
 const INK: RGBColor = RGBColor(0, 0, 0);
 
 /// Why there is no plot.
@@ -41,7 +44,7 @@ impl From<Failed> for PlotError {
     }
 }
 
-/// What is plotted over time.
+/// The error that is plotted over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// relMAE.
@@ -51,7 +54,7 @@ pub enum ErrorKind {
 }
 
 impl ErrorKind {
-    /// What people call it.
+    /// Its name for people.
     pub fn name(self) -> &'static str {
         match self {
             Self::RelMae => "relMAE",
@@ -79,7 +82,7 @@ impl ErrorKind {
 /// axes, whose error or time is zero or infinite, are left out.
 ///
 /// # Errors
-/// Where the plotting library fails.
+/// [`PlotError`] where the plotting library fails.
 pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, PlotError> {
     let series = series(report, kind);
     let points = || series.iter().flat_map(|series| &series.points);
@@ -147,7 +150,7 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
 /// The colours of an error picture with their numbers.
 ///
 /// # Errors
-/// Where the plotting library fails.
+/// [`PlotError`] where the plotting library fails.
 pub fn legend(map: ErrorMap) -> Result<String, PlotError> {
     let (from, to) = (*map.decades().start(), *map.decades().end());
     let colors = map.ramp(LEGEND.0 as usize / 2);
@@ -182,7 +185,7 @@ pub fn legend(map: ErrorMap) -> Result<String, PlotError> {
     Ok(svg)
 }
 
-/// What an error picture's decade stands for.
+/// The error that a decade of an error picture stands for.
 fn tick(decade: f64) -> String {
     let percent = 100.0 * FLOOR * 10.0_f64.powf(decade.abs());
     let sign = match decade {

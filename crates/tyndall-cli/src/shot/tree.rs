@@ -14,7 +14,7 @@ pub(super) struct Entry {
     pub(super) place: Place,
 }
 
-/// Where a value comes from.
+/// A value's origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// A line of the shot file, counted from 1.
