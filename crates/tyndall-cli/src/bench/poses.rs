@@ -11,7 +11,6 @@ use tyndall::{
     techniques::{Backends, Technique},
 };
 use tyndall_scene::geometry::Bounds;
-use tyndall_testkit::samples::in_box;
 
 use super::{
     report::{Bench, Report},
@@ -23,6 +22,7 @@ use crate::{
     measure::{DrawnFrame, Place, Visibility, ray_march},
     picture::Picture,
     progress::Progress,
+    samples::in_box,
     shot::{Override, Shot},
 };
 

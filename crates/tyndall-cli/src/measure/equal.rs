@@ -11,10 +11,9 @@
 use std::collections::BTreeMap;
 
 use tyndall::techniques::{Technique, ray_march};
-use tyndall_testkit::metrics::PictureError;
 
 use super::{DrawnFrame, error_of};
-use crate::{failure::Failure, picture::Picture};
+use crate::{failure::Failure, metrics::PictureError, picture::Picture};
 
 /// The most steps that are tried. Of a local light a software driver may not take so many, which then are never good
 /// enough; see `ray-march`.

@@ -17,6 +17,7 @@ mod turns;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use crate::metrics::PictureError;
 pub use drawn::{DrawnFrame, converged};
 pub use equal::{
     EqualQuality, MAX_STEPS, Marches, ray_march, steps_in_time, time_of_steps, timed_marches,
@@ -26,4 +27,3 @@ pub use film::{Film, TakeFrame};
 pub use place::Place;
 pub use timing::{Budget, Spread, Timing, Timings};
 pub use tyndall::techniques::reference::Visibility;
-pub use tyndall_testkit::metrics::PictureError;

@@ -5,6 +5,7 @@ use super::{
     view::EffectView,
 };
 use crate::{
+    gpu::pool::Owner,
     gpu::{PassTimer, pool::Pool, scope::Shared},
     passes::composite::Composite,
 };
@@ -85,6 +86,6 @@ impl Effect {
         which: usize,
     ) -> wgpu::TextureView {
         let name = ["in-scatter, even", "in-scatter, odd"][which];
-        pool.attachment(device, (None, name), size, self.shared.output)
+        pool.attachment(device, (Owner::View, name), size, self.shared.output)
     }
 }

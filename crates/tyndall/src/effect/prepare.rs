@@ -7,6 +7,7 @@ use crate::{
     frame::{Emitter, Frame, Light},
     gpu::{
         pass::LightPasses,
+        pool::Owner,
         scope::{LightScope, Shared},
         uniforms::{FrameUniform, LightUniform},
     },
@@ -122,7 +123,7 @@ impl Effect {
         } = planned;
         let method = technique.gpu()?;
         let (uniform, variant) = LightUniform::new(light, parts.rays.eye, inputs.glass.is_some());
-        let key = (Some(index), "light");
+        let key = (Owner::Light(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);
         let group = |lights_before| parts.group(&self.shared, lights_before);
         let light_group = self.shared.light_group(device, &uniform, inputs);
@@ -219,7 +220,9 @@ fn begin<'a>(
     view.passes.clear();
     view.counts.clear();
     view.visibilities.clear();
-    let uniform = view.pool.uniform(device, queue, (None, "frame"), &uniform);
+    let uniform = view
+        .pool
+        .uniform(device, queue, (Owner::View, "frame"), &uniform);
     let airlight = effect.airlight(device, queue, frame);
     FrameParts {
         device,

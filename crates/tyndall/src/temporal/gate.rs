@@ -3,6 +3,7 @@
 use super::gpu::Buffers;
 use crate::gpu::{
     pass::{Dispatch, Pass, Vertices, Work, Workgroups},
+    pool::Owner,
     program::ComputeProgram,
     scope::{LightScope, Shared},
 };
@@ -37,7 +38,7 @@ pub(super) fn gate(
 ) -> Vec<Pass> {
     let slots = passes.iter().map(Pass::parts).sum::<usize>().max(1) as u64;
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-    let key = (Some(scope.index), "reuse gate");
+    let key = (Owner::Light(scope.index), "reuse gate");
     let arguments = scope.pool.buffer(scope.device, key, STRIDE * slots, usage);
     let mut gate = Gate {
         arguments,

@@ -13,6 +13,7 @@ use crate::{
     gpu::{
         cache, limits,
         pass::{Dispatch, Draw, FullScreen, LightPasses, Pass, Vertices, Work, Workgroups},
+        pool::Owner,
         program::{ComputeProgram, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
         uniforms::CameraUniform,
@@ -213,7 +214,7 @@ impl Buffers {
         };
         let state = {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-            let key = (Some(scope.index), "reuse state");
+            let key = (Owner::Light(scope.index), "reuse state");
             scope.pool.buffer(scope.device, key, STATE_BYTES, usage)
         };
         Self {
@@ -221,12 +222,12 @@ impl Buffers {
             state,
             // One more, and a draw's four words.
             dispatches: scope.indirect("reuse dispatches", MAX_DISPATCHES as u64 + 3),
-            blocks: scope.storage("reuse blocks", 8 * (blocks * u64::from(faces)).max(1)),
-            map_seen: scope.storage("reuse shadow map", 4 * texels.max(1)),
-            depth_seen: scope.storage("reuse depth", 4 * pixels),
-            age: scope.storage("reuse age", 4 * pixels),
-            witness_seen: scope.storage("reuse witness", witnessed),
-            found: scope.storage("reuse found", 16 * found),
+            blocks: scope.kept_storage("reuse blocks", 8 * (blocks * u64::from(faces)).max(1)),
+            map_seen: scope.kept_storage("reuse shadow map", 4 * texels.max(1)),
+            depth_seen: scope.kept_storage("reuse depth", 4 * pixels),
+            age: scope.kept_storage("reuse age", 4 * pixels),
+            witness_seen: scope.kept_storage("reuse witness", witnessed),
+            found: scope.kept_storage("reuse found", 16 * found),
         }
     }
 }

@@ -6,6 +6,7 @@ use super::{
     options::{Reuse, ReuseMask},
 };
 use crate::{
+    gpu::pool::Owner,
     gpu::{pass::LightPasses, program::STENCIL_FORMAT, scope::LightScope},
     techniques::{GpuMethod, Technique},
 };
@@ -34,7 +35,7 @@ pub(crate) fn passes(
         moved: &moved,
     };
     let attachment = |scope: &mut LightScope<'_>, name, format| {
-        let key = (Some(scope.index), name);
+        let key = (Owner::Light(scope.index), name);
         scope.pool.attachment(scope.device, key, scope.size, format)
     };
     let output = scope.shared.output;

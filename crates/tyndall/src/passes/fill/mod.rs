@@ -41,7 +41,6 @@ impl Fill {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::shader::tests::harness;
     use tyndall_testkit::{device::device_or_skip, wgsl};
     use wgpu::util::DeviceExt;

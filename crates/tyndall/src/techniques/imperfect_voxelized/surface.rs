@@ -4,6 +4,7 @@ use super::gpu::{Buffers, ParamsUniform};
 use crate::{
     gpu::{
         pass::{Pass, Work},
+        pool::Owner,
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
     },
@@ -87,7 +88,7 @@ impl Sums {
         buffers: &Buffers,
     ) -> (Pass, wgpu::TextureView) {
         let resources = buffers.of_batch(0, self.bindings());
-        let key = (Some(scope.index), "visibility from surfaces");
+        let key = (Owner::Light(scope.index), "visibility from surfaces");
         let target = scope.pool.attachment(scope.device, key, scope.size, FORMAT);
         let draw = scope.draw(&programs.resolve, &resources, target.clone());
         let pass = Pass {

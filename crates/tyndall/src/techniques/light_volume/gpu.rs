@@ -15,6 +15,7 @@ use crate::{
     gpu::{
         cache,
         pass::{LightPasses, Pass, Vertices, Work},
+        pool::Owner,
         program::{ComputeProgram, Raster, ScreenProgram, Stencil},
         scope::{LightScope, Shared},
     },
@@ -220,7 +221,7 @@ fn sum_picture(format: wgpu::TextureFormat, scope: &mut LightScope<'_>) -> wgpu:
         depth_or_array_layers: 1,
     };
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-    let key = (None, "light volume jumps");
+    let key = (Owner::View, "light volume jumps");
     scope
         .pool
         .texture(scope.device, key, size, 1, format, usage)
@@ -242,7 +243,7 @@ fn panes(programs: &Programs, scope: &mut LightScope<'_>, passes: &mut Vec<Pass>
         ]
     });
     let count: u64 = blocks.unwrap_or([1; 3]).map(u64::from).iter().product();
-    let key = (Some(scope.index), "light volume panes");
+    let key = (Owner::Light(scope.index), "light volume panes");
     let usage = wgpu::BufferUsages::STORAGE;
     let buffer = scope.pool.buffer(scope.device, key, 4 * count, usage);
     if let Some(blocks) = blocks {
@@ -289,7 +290,7 @@ impl Mesh {
             extent.cells,
             params.tolerance,
         );
-        let key = (Some(scope.index), "light volume is made of");
+        let key = (Owner::Light(scope.index), "light volume is made of");
         let is_kept = made_of.0.is_some() && scope.pool.is_as_noted(key, made_of);
         let mesh = Self {
             extent,
@@ -398,7 +399,7 @@ impl Tree {
         let storage = wgpu::BufferUsages::STORAGE;
         let arguments = storage | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC;
         let mut buffer = |name, size, usage| {
-            let key = (Some(scope.index), name);
+            let key = (Owner::Light(scope.index), name);
             scope.pool.buffer(scope.device, key, size, usage)
         };
         let tree = Self {
