@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "epipolar sampling with 1-D min/max trees: few rays marched along epipolar lines, the rest interpolated",
     citation: "Engelhardt & Dachsbacher, Epipolar Sampling for Shadows and Crepuscular Rays in Participating Media with Single Scattering, I3D 2010; Yusov, IVB Atmospheric Light Scattering, 2012",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: true,

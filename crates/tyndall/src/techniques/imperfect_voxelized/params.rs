@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "imperfect voxelized shadow volumes: an area light as hundreds of coarse grids, all made at once",
     citation: "Wyman & Dai, Imperfect Voxelized Shadow Volumes, HPG 2013; maps: Ritschel et al., Imperfect Shadow Maps, SIGGRAPH Asia 2008",
     lights: &[LightKind::Rect],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: false,

@@ -13,6 +13,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "1-D min-max mipmaps over epipolar slices, lit stretches in closed form",
     citation: "Chen, Baran, Durand & Jarosz, Real-Time Volumetric Shadows using 1D Min-Max Mipmaps, I3D 2011",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Both,
     reads: Reads {
         glass: true,

@@ -17,6 +17,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
         LightKind::Spot,
         LightKind::Rect,
     ],
+    lights_on_gpu_only: &[LightKind::Rect],
     backends: Backends::Both,
     reads: Reads {
         glass: true,

@@ -17,6 +17,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
         LightKind::Spot,
         LightKind::Rect,
     ],
+    lights_on_gpu_only: &[],
     backends: Backends::Cpu,
     reads: Reads {
         glass: true,
