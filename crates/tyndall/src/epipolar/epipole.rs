@@ -6,8 +6,6 @@ use crate::{camera::CameraRays, frame::Emitter, physics::reals};
 
 /// A light nearer to the eye than this [m] has no place of its own on the picture.
 const LEAST_DISTANCE: f64 = 1e-6;
-/// Lines begin and end this far outside the picture [pixels]; as in `screen.wgsl`.
-const MARGIN: f64 = 1.0;
 
 /// The point of the picture that all epipolar lines pass through, and the axis that all slices contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,9 +20,10 @@ pub(crate) struct Epipole {
 }
 
 impl Epipole {
-    /// Of a light that is not a rectangle. Where it has no place of its own (the eye is at the light, or the sun shines along
-    /// the rays of an orthographic camera) every bundle of lines will do: they meet in the middle.
-    pub(crate) fn new(camera: &CameraRays, size: [u32; 2], emitter: &Emitter) -> Self {
+    /// The epipole of a light that is not a rectangle, of lines that begin and end `margin` [pixels] outside the picture.
+    /// A light without a place of its own (the eye is at the light, or the sun shines along the rays of an orthographic
+    /// camera) may take any bundle of lines: they meet in the middle.
+    pub(crate) fn new(camera: &CameraRays, size: [u32; 2], emitter: &Emitter, margin: f64) -> Self {
         let (to_light, w) = match *emitter {
             Emitter::Directional { direction, .. } => (-reals(direction).normalize_or_zero(), 0.0),
             Emitter::Point { position, .. } | Emitter::Spot { position, .. } => {
@@ -53,14 +52,14 @@ impl Epipole {
         Self {
             place,
             axis,
-            arc: arc(size, place),
+            arc: arc(size, place, margin),
         }
     }
 }
 
 /// The point of the border at a parameter in [0, 1): counter-clockwise from the top left corner, a quarter a side
 /// (Yusov 2012, section 6.1).
-fn exit(size: DVec2, border: f64) -> DVec2 {
+fn exit(size: DVec2, border: f64, margin: f64) -> DVec2 {
     let side = (4.0 * border).floor().clamp(0.0, 3.0);
     let along = 4.0 * border - side;
     let place = match side as u32 {
@@ -69,15 +68,15 @@ fn exit(size: DVec2, border: f64) -> DVec2 {
         2 => DVec2::new(1.0, 1.0 - along),
         _ => DVec2::new(1.0 - along, 0.0),
     };
-    place * (size + 2.0 * MARGIN) - MARGIN
+    place * (size + 2.0 * margin) - margin
 }
 
 /// The part of the border that lies behind the picture as seen from the epipole: from the corner on one side to that on the
 /// other; all of it where the epipole is on the picture.
-fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
+fn arc(size: DVec2, epipole: DVec3, margin: f64) -> [f64; 2] {
     let away = |p: DVec2| p * epipole.z - epipole.truncate();
     let inside = |p: DVec2| {
-        epipole.z > 0.0 && p.cmpge(DVec2::splat(-MARGIN)).all() && p.cmple(size + MARGIN).all()
+        epipole.z > 0.0 && p.cmpge(DVec2::splat(-margin)).all() && p.cmple(size + margin).all()
     };
     if inside(epipole.truncate() / epipole.z) {
         return [0.0, 1.0];
@@ -85,7 +84,7 @@ fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
     let middle = away(0.5 * size);
     let corners = [0.0, 0.25, 0.5, 0.75].map(|border| {
         // The angle between the ways to the middle and to the corner; in parallel lines their order is left.
-        let corner = exit(size, border);
+        let corner = exit(size, border, margin);
         let across = epipole.z.max(1e-9) * middle.perp_dot(corner - 0.5 * size);
         (across.atan2(middle.dot(away(corner))), border)
     });
@@ -100,7 +99,8 @@ fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
     let between = |from: f64, to: f64| [from, (to - from).rem_euclid(1.0)];
     let [near, far] = [between(first.1, last.1), between(last.1, first.1)];
     let distance = |[start, length]: [f64; 2]| {
-        middle.dot(away(exit(size, (start + 0.5 * length).rem_euclid(1.0))))
+        let border = (start + 0.5 * length).rem_euclid(1.0);
+        middle.dot(away(exit(size, border, margin)))
     };
     if distance(near) > distance(far) {
         near
@@ -117,6 +117,10 @@ mod tests {
     use tyndall_testkit::{device::device_or_skip, samples::in_box, wgsl};
 
     const SIZE: [u32; 2] = [320, 200];
+
+    fn margin() -> f64 {
+        crate::shader::constant("SCREEN_MARGIN_PIXELS").into()
+    }
 
     fn camera() -> CameraRays {
         let target = [0.3, -0.2, -1.0];
@@ -175,7 +179,7 @@ mod tests {
                     intensity: [1.0; 3],
                 };
                 for emitter in [sun, lamp] {
-                    let found = Epipole::new(&camera, SIZE, &emitter);
+                    let found = Epipole::new(&camera, SIZE, &emitter, margin());
                     let place = found.place.truncate() / found.place.z;
                     // f32 directions: measured 4.3e-5 pixels.
                     assert!(
@@ -196,7 +200,7 @@ mod tests {
             intensity: [1.0; 3],
         };
         let camera = camera();
-        let found = Epipole::new(&camera, SIZE, &lamp);
+        let found = Epipole::new(&camera, SIZE, &lamp, margin());
         assert_eq!((found.place, found.axis), (middle, camera.forward));
         let mut flat = Camera::perspective(
             [0.0; 3],
@@ -217,7 +221,7 @@ mod tests {
             direction: [0.0, 0.0, -1.0],
             illuminance: [1.0; 3],
         };
-        let found = Epipole::new(&CameraRays::new(&flat, SIZE), SIZE, &along);
+        let found = Epipole::new(&CameraRays::new(&flat, SIZE), SIZE, &along, margin());
         assert_eq!(found.place, middle);
     }
 
@@ -231,7 +235,7 @@ mod tests {
         let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
         let samples = 64;
         for epipole in epipoles().into_iter().map(normalized) {
-            let [start, length] = arc(size, epipole);
+            let [start, length] = arc(size, epipole, margin());
             let [ex, ey, ez] = epipole.as_vec3().to_array();
             let pixels = in_box(9, 500, [0.5..=319.5, 0.5..=199.5]);
             let inputs: Vec<[f32; 7]> = pixels

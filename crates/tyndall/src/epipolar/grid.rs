@@ -27,7 +27,8 @@ use crate::{
     shadow::Face,
 };
 
-/// View rays nearer to the axis are not decomposed: `SVD_LEAST_SINE` of `svd_stretch.wgsl`.
+/// Sine of the angle to the axis below which view rays are not decomposed: nearer than a tenth of a radian few terms do
+/// not hold exp(-sigma_t gamma / sin beta).
 pub(crate) const SVD_LEAST_SINE: f64 = 0.1;
 
 /// A slice's turn about the axis [rad] that the bounds of its cells still hold for.

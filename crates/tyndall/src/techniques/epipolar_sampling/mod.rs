@@ -56,10 +56,40 @@
 //! most samples: all are marched.
 
 #[cfg(feature = "gpu")]
-pub(crate) mod gpu;
+mod coordinates;
+#[cfg(feature = "gpu")]
+mod correct;
+#[cfg(feature = "gpu")]
+mod finish;
+#[cfg(feature = "gpu")]
+mod finish_points;
+#[cfg(feature = "gpu")]
+mod gpu;
+#[cfg(feature = "gpu")]
+mod interpolate;
+#[cfg(feature = "gpu")]
+mod march_samples;
 mod params;
 #[cfg(feature = "gpu")]
+mod refine;
+#[cfg(feature = "gpu")]
+mod resources;
+#[cfg(feature = "gpu")]
 mod sizes;
+#[cfg(feature = "gpu")]
+mod slice_directions;
+#[cfg(feature = "gpu")]
+mod slice_ends;
+#[cfg(feature = "gpu")]
+mod tree;
+#[cfg(feature = "gpu")]
+mod unwarp;
+#[cfg(feature = "gpu")]
+mod unwarp_finish;
+#[cfg(feature = "gpu")]
+mod upscale;
+#[cfg(feature = "gpu")]
+mod view;
 
 pub use params::*;
 

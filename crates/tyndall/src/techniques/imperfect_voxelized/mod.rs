@@ -4,9 +4,9 @@
 //! each has wrong, so that each may be coarse; and coarse ones can be made all at once. A frame has seven passes, however
 //! many the samples (more only where the device binds no buffer that is large enough for all):
 //!
-//! 1. **sample light**: Halton's points of the rectangle, each with its share of the light, in the colour of its picture;
+//! 1. **sample light**: Halton's points of the rectangle, each with its share of the light, in the colour of its texture;
 //! 2. **splat points** and 3. **pull-push**: a hemispherical shadow map a sample, made of its own block of the caller's
-//!    [`PointCloud`](crate::PointCloud), see `shadow/imperfect/`;
+//!    [`PointCloud`](crate::PointCloud), see `passes/imperfect/`;
 //! 4. **voxelize**: each map resampled to its sample's epipolar grid, one voxel a light ray;
 //! 5. **scan**: the OR along the light rays of all grids;
 //! 6. **gather**: each pixel adds up what it sees of every sample; 7. **resolve** writes the output.
@@ -109,10 +109,20 @@
 //! tints nothing. Rays through the light itself show its samples. On the CPU it is refused by name.
 
 #[cfg(feature = "gpu")]
-pub(crate) mod gpu;
+mod buffers;
+#[cfg(feature = "gpu")]
+mod gather;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod params;
 #[cfg(feature = "gpu")]
+mod rectify;
+#[cfg(feature = "gpu")]
+mod resolve;
+#[cfg(feature = "gpu")]
 mod surface;
+#[cfg(feature = "gpu")]
+mod surface_resolve;
 
 pub use params::*;
 

@@ -46,9 +46,9 @@ const GATHERS: &[(&str, Gather)] = &[
 pub enum Weighting {
     /// Its share of the light that the ray would get without shadows.
     #[default]
-    Airlight = 0,
+    Airlight,
     /// The same for all.
-    Uniform = 1,
+    Uniform,
 }
 
 const WEIGHTINGS: &[(&str, Weighting)] = &[

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::{
     params::{Integrator, Params},
-    svd::{self, SvdRay, TOLERANCE},
+    svd,
+    svd_stretch::{SvdRay, TOLERANCE},
 };
 use crate::{
     camera::Ray,

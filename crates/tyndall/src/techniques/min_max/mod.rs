@@ -4,7 +4,7 @@
 //! slices, becomes one row S[gamma] a slice, and a point of the view ray b at the light ray gamma is lit iff
 //! b < S[gamma]: a search in one dimension, sped up by a complete binary tree of (min, max) over the row. The tree is
 //! traversed without recursion, up at most one level a step, and adjoining nodes in the same state make one stretch (the
-//! paper's section 3.3).
+//! paper's figure 5 and section 3.5).
 //!
 //! Where the paper samples S, a leaf here is a cell of light rays, as wide as its slice, and holds the least and the
 //! greatest S of all of them: from the nearest and farthest depth of the shadow map's texels beneath it, read from a
@@ -15,7 +15,7 @@
 //!
 //! # Integrators
 //!
-//! - `analytic` integrates each lit stretch in closed form (the paper's section 4.3): exponentials of the sun, airlight
+//! - `analytic` integrates each lit stretch in closed form (what section 4.3 suggests for untextured lights): exponentials of the sun, airlight
 //!   tables of a lamp (Sun et al. 2005). Where a cone fades, or a picture lies on the light, by quadrature.
 //! - `svd` takes the integrand without visibility for a sum of few products of a function of the view ray and one of
 //!   the light ray (section 3.2, eq. 5 and 6), which a singular value decomposition finds, per colour channel:
@@ -36,7 +36,7 @@
 //!
 //! - A light's picture dims a light ray on its whole length. On the GPU each slice holds its sums up to every column of
 //!   gamma, as many as leaves and at least 512: with the 64 of a coarse map a picture was 0.12 wrong, with 512 0.02.
-//!   A stretch is cut into blocks of 0.1 optical depth or 0.02 rad at the light; each block's light goes with the mean of
+//!   A stretch is cut into blocks of 0.1 optical depth or 0.01 rad at the light; each block's light goes with the mean of
 //!   the picture over it. Sums of the `svd` integrator are weighted by Gamma_i, and need no blocks. The CPU samples
 //!   the picture as finely as it takes, with either integrator.
 //! - Coloured glass tints from where it is on. A second tree holds the glass that is nearest to the light: before it a
@@ -84,11 +84,22 @@
 //! steps of marching, against 100 in a church. It is exact for that: marching is not as good with 32768 steps, 15 times
 //! the time (`tyndall bench chen`), but with 2000 steps its error there is 0.003, which may do.
 
-pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
-pub(crate) mod gpu;
+mod buffers;
+mod cpu;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod params;
-pub(crate) mod svd;
+#[cfg(feature = "gpu")]
+mod rectify;
+#[cfg(feature = "gpu")]
+mod show;
+mod svd;
+mod svd_stretch;
+#[cfg(feature = "gpu")]
+mod tint_rows;
+#[cfg(feature = "gpu")]
+mod traverse;
 
 pub use params::*;
 

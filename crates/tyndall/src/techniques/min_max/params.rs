@@ -42,16 +42,16 @@ const INTEGRATORS: &[(&str, Integrator)] =
 pub enum Show {
     /// The in-scattered light.
     #[default]
-    Light = 0,
+    Light,
     /// Each slice in a colour of its own; black where rays have none.
-    Slices = 1,
+    Slices,
     /// Lit stretches a ray: 0 black, then blue, red, yellow, 16 white.
-    Segments = 2,
+    Segments,
     /// Nodes visited (red) and texels walked (green), in 128ths.
-    Nodes = 3,
+    Nodes,
     /// The rectified map: slices from top to bottom, light rays from left to right, S from black to white; red where
     /// the light never ends.
-    Map = 4,
+    Map,
 }
 
 const SHOWS: &[(&str, Show)] = &[

@@ -13,16 +13,16 @@ use crate::{
         program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
     },
-    passes::imperfect::gpu::{self as imperfect, AreaLight, Maps},
+    passes::imperfect::{
+        area::{AreaLight, Maps},
+        gpu as imperfect,
+    },
     shader::block,
     techniques::{
         info::Reach,
         method::{GpuMethod, LightRequest},
     },
 };
-
-/// Pixels a side that a workgroup of `area.wgsl` takes.
-const TILE: u32 = 8;
 
 /// Steps of all samples together that an invocation takes in one dispatch: drivers end what runs for too long, Mesa's
 /// lavapipe without a word after 65535 turns of all loops, of which a step takes some.
@@ -32,7 +32,7 @@ block! {
     /// The shaders' `RayMarchParams`.
     pub(crate) struct ParamsUniform = "RayMarchParams" in "tyndall::techniques::ray_march::params", checked by ray_march_params_is_laid_out_as_in_wgsl {
         pub(crate) steps: u32,
-        pub(crate) spacing: u32,
+        pub(crate) is_equiangular: u32,
         pad: [u32; 2],
     }
 }
@@ -41,10 +41,7 @@ impl ParamsUniform {
     pub(crate) fn new(params: &Params) -> Self {
         Self {
             steps: params.steps,
-            spacing: match params.spacing {
-                Spacing::Equal => 0,
-                Spacing::Equiangular => 1,
-            },
+            is_equiangular: u32::from(params.spacing == Spacing::Equiangular),
             pad: [0; 2],
         }
     }
@@ -140,8 +137,9 @@ fn march_area(
             uniform.as_entire_binding(),
             sums.as_entire_binding(),
         ];
-        let [x, y] = scope.size.map(|n| n.div_ceil(TILE));
-        passes.push(scope.compute(&programs.march_area, "ray march", &resources, [x, y, 1]));
+        let [width, height] = scope.size;
+        let workgroups = programs.march_area.workgroups([width, height, 1]);
+        passes.push(scope.compute(&programs.march_area, "ray march", &resources, workgroups));
     }
     let resources = [sums.as_entire_binding()];
     LightPasses::new(
