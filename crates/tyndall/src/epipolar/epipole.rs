@@ -1,17 +1,17 @@
-//! Where the epipolar lines of a picture meet, and where they leave it.
+//! The point where the epipolar lines of an image meet, and the part of its border where they leave it.
 
 use glam::{DVec2, DVec3};
 
 use crate::{camera::CameraRays, frame::Emitter, physics::reals};
 
-/// A light nearer to the eye than this [m] has no place of its own on the picture.
+/// A light nearer to the eye than this [m] has no place of its own on the image.
 const LEAST_DISTANCE: f64 = 1e-6;
 
-/// The point of the picture that all epipolar lines pass through, and the axis that all slices contain.
+/// The point of the image that all epipolar lines pass through, and the axis that all slices contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Epipole {
-    /// Homogeneous place on the picture [pixels], z >= 0; with z = 0 the lines are parallel. Of an epipole behind the
-    /// camera it is the place opposite. Its largest component, in units of the picture, is 1.
+    /// Homogeneous place on the image [pixels], z >= 0; with z = 0 the lines are parallel. Of an epipole behind the
+    /// camera it is the place opposite. Its largest component, in units of the image, is 1.
     pub(crate) place: DVec3,
     /// Unit direction of the line through eye and light (orthographic: of the view rays), towards the light.
     pub(crate) axis: DVec3,
@@ -20,7 +20,7 @@ pub(crate) struct Epipole {
 }
 
 impl Epipole {
-    /// The epipole of a light that is not a rectangle, of lines that begin and end `margin` [pixels] outside the picture.
+    /// The epipole of a light that is not a rectangle, of lines that begin and end `margin` [pixels] outside the image.
     /// A light without a place of its own (the eye is at the light, or the sun shines along the rays of an orthographic
     /// camera) may take any bundle of lines: they meet in the middle.
     pub(crate) fn new(camera: &CameraRays, size: [u32; 2], emitter: &Emitter, margin: f64) -> Self {
@@ -71,8 +71,8 @@ fn exit(size: DVec2, border: f64, margin: f64) -> DVec2 {
     place * (size + 2.0 * margin) - margin
 }
 
-/// The part of the border that lies behind the picture as seen from the epipole: from the corner on one side to that on the
-/// other; all of it where the epipole is on the picture.
+/// The part of the border that lies behind the image as seen from the epipole: from the corner on one side to that on the
+/// other; all of it where the epipole is on the image.
 fn arc(size: DVec2, epipole: DVec3, margin: f64) -> [f64; 2] {
     let away = |p: DVec2| p * epipole.z - epipole.truncate();
     let inside = |p: DVec2| {
@@ -83,7 +83,7 @@ fn arc(size: DVec2, epipole: DVec3, margin: f64) -> [f64; 2] {
     }
     let middle = away(0.5 * size);
     let corners = [0.0, 0.25, 0.5, 0.75].map(|border| {
-        // The angle between the ways to the middle and to the corner; in parallel lines their order is left.
+        // The angle between the directions to the middle and to the corner; in parallel lines their order is left.
         let corner = exit(size, border, margin);
         let across = epipole.z.max(1e-9) * middle.perp_dot(corner - 0.5 * size);
         (across.atan2(middle.dot(away(corner))), border)
@@ -128,7 +128,7 @@ mod tests {
         CameraRays::new(&camera, SIZE)
     }
 
-    /// Places of the epipole on the picture [pixels], behind the camera where z < 0: on it, at its rim, in and beside a
+    /// Places of the epipole on the image [pixels], behind the camera where z < 0: on it, at its rim, in and beside a
     /// corner, off each side, far away, at infinity.
     fn epipoles() -> Vec<DVec3> {
         let [w, h] = SIZE.map(f64::from);
@@ -162,7 +162,7 @@ mod tests {
         place / scale * if place.z < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// The sun and a lamp towards a point of the picture have their epipole there, or opposite where they are behind.
+    /// The sun and a lamp towards a point of the image have their epipole there, or opposite where they are behind.
     #[test]
     fn an_epipole_is_where_the_light_is_seen() {
         let camera = camera();
@@ -276,7 +276,7 @@ import tyndall::passes::epipolar::screen::{
                 let [x, y, dx, dy] = lines[i].map(f64::from);
                 let (entry, step) = (DVec2::new(x, y), DVec2::new(dx, dy));
                 let place = entry + f64::from(sample[i][0]) * step;
-                // Measured 2.2e-3, of an epipole 9e5 pixels away; 1e-3 on the picture.
+                // Measured 2.2e-3, of an epipole 9e5 pixels away; 1e-3 on the image.
                 assert!(
                     (place - pixel).length() < 5e-3,
                     "{epipole} {pixel}: {place}"

@@ -49,7 +49,7 @@ pub(crate) struct AreaLight {
     share: f64,
 }
 
-/// How the maps of a light are made.
+/// Sizes of the maps of a light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Maps {
     /// Texels a side; 0: nothing blocks the light.

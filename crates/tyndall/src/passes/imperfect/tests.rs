@@ -51,8 +51,8 @@ fn buffer(gpu: &TestDevice, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu:
 fn the_projection_is_one_to_one_and_its_texels_are_alike() {
     for x in in_box(3, 4000, [const { 0.0..=1.0 }; 2]) {
         let place = DVec2::new(x[0].into(), x[1].into());
-        let way = twin::direction(place);
-        assert!(way.z >= -1e-12 && (twin::place(way) - place).length() < 1e-12);
+        let direction = twin::direction(place);
+        assert!(direction.z >= -1e-12 && (twin::place(direction) - place).length() < 1e-12);
     }
     // Solid angles over their mean, 2 pi / side^2: measured 0.35 to 1.64.
     let side = 32;
@@ -248,9 +248,9 @@ fn holes_are_filled_as_by_the_twin() {
     }
 }
 
-/// What was splat is what is looked up.
+/// Lookups find the points that were splat.
 #[test]
-fn lookups_find_the_texel_of_their_way() {
+fn lookups_find_the_texel_of_their_direction() {
     let Some(gpu) = device_or_skip("lookup.wgsl") else {
         return;
     };
@@ -297,12 +297,12 @@ fn lookups_find_the_texel_of_their_way() {
     let mut looked_up = 0;
     for (input, found) in inputs.iter().zip(found) {
         let tile = input[3] as usize;
-        let way = reals([input[0], input[1], input[2]]);
+        let direction = reals([input[0], input[1], input[2]]);
         let x = reals(samples[tile].tangent);
         let local = DVec3::new(
-            way.dot(x),
-            way.dot(light.normal.cross(x)),
-            way.dot(light.normal),
+            direction.dot(x),
+            direction.dot(light.normal.cross(x)),
+            direction.dot(light.normal),
         );
         let place = twin::place(local);
         if local.z <= 0.0 {

@@ -21,7 +21,7 @@ block! {
     }
 }
 
-/// Names of the uniforms of the dispatches; more levels than these build, no tree has.
+/// Names of the dispatches' uniforms, enough for the highest tree.
 const NAMES: [&str; 4] = ["tree 0", "tree 4", "tree 8", "tree 12"];
 
 pub(super) struct Tree(ComputeProgram);

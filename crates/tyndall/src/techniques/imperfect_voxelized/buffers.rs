@@ -121,7 +121,7 @@ impl Buffers {
     }
 }
 
-/// How the maps are made, and how many samples' maps and voxels the device binds at once.
+/// The maps of all samples, and as many at once as the device binds maps and voxels.
 pub(super) fn maps(
     params: &Params,
     area: &AreaLight,

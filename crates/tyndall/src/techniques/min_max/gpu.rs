@@ -73,7 +73,7 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     LightPasses::new(passes, last)
 }
 
-/// How far from its ray a pixel looks: at the slice beside it, which is half a pixel off at most, unless the slices are
+/// The reach of a pixel: it looks at the slice beside it, which is half a pixel off at most, unless the slices are
 /// given by hand.
 fn reach(params: &Params) -> Reach {
     match params.resolution.slices {

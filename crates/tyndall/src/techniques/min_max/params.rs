@@ -24,10 +24,10 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     is_reference: false,
 };
 
-/// How lit stretches are integrated.
+/// Integrals of lit stretches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// In closed form, or by quadrature where the light has a cone or a picture.
+    /// In closed form, or by quadrature where the light has a cone or a texture.
     #[default]
     Analytic,
     /// By the singular value decomposition of the integrand without visibility.
@@ -37,7 +37,7 @@ pub enum Integrator {
 const INTEGRATORS: &[(&str, Integrator)] =
     &[("analytic", Integrator::Analytic), ("svd", Integrator::Svd)];
 
-/// What is drawn.
+/// Content of the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Show {
     /// The in-scattered light.
@@ -67,11 +67,11 @@ const SHOWS: &[(&str, Show)] = &[
 pub struct Params {
     /// Slices and samples.
     pub resolution: Resolution,
-    /// How lit stretches are integrated.
+    /// Integral of lit stretches.
     pub integrator: Integrator,
     /// Terms of the `svd` integrator (1 to 16).
     pub rank: u32,
-    /// What is drawn; the debug views on the GPU only.
+    /// Content of the image; the debug views on the GPU only.
     pub show: Show,
 }
 

@@ -1,7 +1,7 @@
 //! The `svd` integrator: the integrand without visibility as a sum of products (Chen 2011, section 3.2, eq. 5 and 6).
 //!
 //! With gamma as variable of integration a lit stretch is `F(beta) integral K(beta, gamma) T(gamma) d gamma`, where T is
-//! what the light ray is dimmed by on its whole length, and
+//! the factor that dims the light ray on its entire length, and
 //!
 //! ```text
 //!         F             K
