@@ -2,6 +2,9 @@
 //!
 //! World space is right-handed; lengths are metres, angles radians, colours linear RGB.
 
+pub use crate::phase::Phase;
+use crate::phase::droplets::droplets;
+
 /// One view of one moment: everything a technique needs besides textures (depth, shadow maps).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
@@ -290,16 +293,16 @@ pub struct MediumComponent {
     pub phase: Phase,
 }
 
-/// A phase function of cos(theta), the cosine between the way light travels and the way it is scattered [1/sr].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Phase {
-    /// 1 / 4 pi.
-    Isotropic,
-    /// Small particles: 3 / 16 pi (1 + cos^2).
-    Rayleigh,
-    /// Henyey & Greenstein 1941.
-    HenyeyGreenstein {
-        /// Mean cosine (-1 < g < 1); forward scattering where positive.
-        g: f32,
-    },
+impl MediumComponent {
+    /// Fog or cloud of water droplets of this diameter [um], 5 to 50: two components that share the coefficients [1/m], a wide
+    /// lobe and a narrow forward peak; see [`droplets`](crate::phase::droplets::droplets) (Jendersie & d'Eon 2023). `None`
+    /// where the diameter is out of range.
+    pub fn fog_droplets(sigma_s: [f32; 3], sigma_a: [f32; 3], diameter: f32) -> Option<[Self; 2]> {
+        let parts = droplets(diameter)?;
+        Some(parts.map(|(share, phase)| Self {
+            sigma_s: sigma_s.map(|x| (f64::from(x) * share) as f32),
+            sigma_a: sigma_a.map(|x| (f64::from(x) * share) as f32),
+            phase,
+        }))
+    }
 }

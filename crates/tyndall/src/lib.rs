@@ -103,6 +103,7 @@ pub mod light;
 mod mesh;
 #[cfg(feature = "gpu")]
 mod passes;
+pub mod phase;
 pub mod physics;
 #[cfg(feature = "gpu")]
 pub mod shader;

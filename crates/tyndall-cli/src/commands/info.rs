@@ -8,6 +8,7 @@ use std::{
 
 use tyndall::{
     frame::{Emitter, Projection},
+    phase::{self, PhaseInfo},
     techniques::{Backends, TABLE, TechniqueInfo},
 };
 use tyndall_scene::{
@@ -39,6 +40,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
         }
         None => write_adapters(&mut text)
             .and_then(|()| write_techniques(&mut text))
+            .and_then(|()| write_phases(&mut text))
             .and_then(|()| write_builtins(&mut text)),
     };
     written.map_err(Failure::input)?;
@@ -125,6 +127,22 @@ fn write_technique(text: &mut String, info: &TechniqueInfo) -> std::fmt::Result 
         )?;
     }
     Ok(())
+}
+
+fn write_phases(text: &mut String) -> std::fmt::Result {
+    writeln!(text, "\nPhase functions, for medium.phase.kind")?;
+    phase::TABLE
+        .iter()
+        .try_for_each(|info| write_phase(text, info))
+}
+
+fn write_phase(text: &mut String, info: &PhaseInfo) -> std::fmt::Result {
+    writeln!(text, "  {}: {}", info.name, info.about)?;
+    writeln!(text, "    {}", info.citation)?;
+    info.params.iter().try_for_each(|param| {
+        let (key, about, range) = (param.key, param.about, param.range);
+        writeln!(text, "    medium.phase.{key}: {about} ({range})")
+    })
 }
 
 fn write_builtins(text: &mut String) -> std::fmt::Result {

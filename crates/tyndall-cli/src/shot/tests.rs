@@ -443,7 +443,22 @@ fn every_mistake_names_line_key_expected_and_found() {
         (
             "\"hg\"",
             "\"mie\"",
-            "shot.toml:27: medium.phase.kind: no phase function is called \"mie\": expected isotropic, rayleigh or hg",
+            "shot.toml:27: medium.phase.kind: no phase function is called \"mie\": expected isotropic, rayleigh, hg, cornette-shanks or draine",
+        ),
+        (
+            "\"hg\"",
+            "\"draine\"",
+            "shot.toml:27: medium.phase.alpha: is missing: expected a finite number >= 0",
+        ),
+        (
+            "{ kind = \"hg\", g = 0.4 }",
+            "{ kind = \"draine\", g = 0.4, alpha = -1 }",
+            "shot.toml:27: medium.phase.alpha: expected a finite number >= 0, found -1",
+        ),
+        (
+            "{ kind = \"hg\", g = 0.4 }",
+            "{ kind = \"cornette-shanks\", g = 0.4, alpha = 1 }",
+            "shot.toml:27: medium.phase.alpha: no such key: expected kind or g",
         ),
         (
             "phase = {",
@@ -500,6 +515,24 @@ fn a_rect_or_texture_without_area_is_refused() {
             "shot.toml:9: light.0.vpls: expected a whole number from 1 to 1024, found {vpls}"
         );
         assert_eq!(error, message);
+    }
+}
+
+#[test]
+fn every_phase_function_is_read_and_written() {
+    let folder = Folder::new();
+    for info in tyndall::phase::TABLE {
+        let params = info.params.iter().zip(["0.25", "0.5"]);
+        let keys: String = params
+            .map(|(p, value)| format!(", {} = {value}", p.key))
+            .collect();
+        let table = format!("{{ kind = \"{}\"{keys} }}", info.name);
+        let source = shot_with("{ kind = \"hg\", g = 0.4 }", &table);
+        let medium = folder.load(&source, None, &[]).unwrap().medium.unwrap();
+        let expected = Phase::from_name(info.name, [0.25, 0.5]).unwrap();
+        assert_eq!(medium.components[0].phase, expected);
+        let again = scene_shot(&["medium.sigma_a=[0,0,0]"]).scene_medium(&medium);
+        assert_eq!(again.unwrap().components[0].phase, expected);
     }
 }
 

@@ -123,6 +123,7 @@ impl Effect {
         } = planned;
         let method = technique.gpu()?;
         let (uniform, variant) = LightUniform::new(light, parts.rays.eye, inputs.glass.is_some());
+        let variant = variant.within(&frame.medium);
         let key = (Owner::Light(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);
         let group = |lights_before| parts.group(&self.shared, lights_before);

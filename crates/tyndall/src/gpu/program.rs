@@ -145,6 +145,18 @@ struct Own {
 }
 
 impl Recipe {
+    /// The variant but for what the shader does not read, so that one pipeline does for all that differ in nothing else.
+    fn needed(&self, variant: LightVariant) -> LightVariant {
+        let reads_medium = self.shader.reflection.has_override("MEDIUM_PHASES");
+        let phases = if reads_medium { variant.phases } else { 0 };
+        let light = if self.reads_light {
+            variant
+        } else {
+            LightVariant::default()
+        };
+        LightVariant { phases, ..light }
+    }
+
     fn own(&self, device: &wgpu::Device) -> Own {
         let entry_points = [self.entry_point, self.raster.vertex];
         let entries = self.shader.reflection.bindings_of(2, &entry_points);
@@ -332,11 +344,7 @@ impl<P: Pipeline> Program<P> {
         variant: LightVariant,
         stencil: Stencil,
     ) -> P {
-        let variant = if self.recipe.reads_light {
-            variant
-        } else {
-            LightVariant::default()
-        };
+        let variant = self.recipe.needed(variant);
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let make = || {
             let mut constants = variant.constants().to_vec();

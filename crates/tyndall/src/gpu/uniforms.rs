@@ -5,8 +5,9 @@ use glam::{DMat4, DVec3};
 
 use crate::{
     camera::CameraRays,
-    frame::{self, DepthRange, Emitter, Phase, Projection, ShadowProjection},
+    frame::{self, DepthRange, Emitter, Projection, ShadowProjection},
     light::texture::{MappingKind, TextureMapping},
+    phase::MAX_PARAMS,
     physics::{medium::Optics, reals},
     shader::block,
     shadow,
@@ -50,8 +51,8 @@ block! {
     pub(crate) struct MediumComponentUniform = "MediumComponent" in "tyndall::physics::medium", checked by medium_component_is_laid_out_as_in_wgsl {
         pub(crate) sigma_s: [f32; 3],
         pub(crate) phase: u32,
-        pub(crate) g: f32,
-        pad: [f32; 3],
+        pub(crate) parameters: [f32; MAX_PARAMS],
+        pad: [f32; 2],
     }
 }
 
@@ -73,23 +74,36 @@ block! {
     }
 }
 
-/// Which kind of light a pipeline is made for: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND`, `SHADOW_GLASS`.
+/// Which kind of light and which phase functions a pipeline is made for: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND`,
+/// `SHADOW_GLASS`, `MEDIUM_PHASES`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct LightVariant {
     pub(crate) kind: u32,
     pub(crate) texture: u32,
     pub(crate) shadow: u32,
     pub(crate) glass: bool,
+    /// Bit n is set where the medium has phase function n.
+    pub(crate) phases: u32,
 }
 
 impl LightVariant {
+    /// The same in this medium.
+    pub(crate) fn within(self, medium: &frame::Medium) -> Self {
+        let bits = medium.components.iter().map(|c| 1 << c.phase.number());
+        Self {
+            phases: bits.fold(0, |all, bit: u32| all | bit),
+            ..self
+        }
+    }
+
     /// The values of the shader's overrides.
-    pub(crate) fn constants(self) -> [(&'static str, f64); 4] {
+    pub(crate) fn constants(self) -> [(&'static str, f64); 5] {
         [
             ("LIGHT_KIND", self.kind.into()),
             ("LIGHT_TEXTURE", self.texture.into()),
             ("SHADOW_KIND", self.shadow.into()),
             ("SHADOW_GLASS", f64::from(u8::from(self.glass))),
+            ("MEDIUM_PHASES", self.phases.into()),
         ]
     }
 }
@@ -147,16 +161,11 @@ impl MediumUniform {
     fn new(medium: &frame::Medium) -> Self {
         let mut components = [MediumComponentUniform::zeroed(); frame::Medium::MAX_COMPONENTS];
         for (slot, component) in components.iter_mut().zip(&medium.components) {
-            let (phase, g) = match component.phase {
-                Phase::Isotropic => (0, 0.0),
-                Phase::Rayleigh => (1, 0.0),
-                Phase::HenyeyGreenstein { g } => (2, g),
-            };
             *slot = MediumComponentUniform {
                 sigma_s: component.sigma_s,
-                phase,
-                g,
-                pad: [0.0; 3],
+                phase: component.phase.number(),
+                parameters: component.phase.values(),
+                pad: [0.0; 2],
             };
         }
         Self {

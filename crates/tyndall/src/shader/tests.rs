@@ -6,7 +6,7 @@ use naga::{
 };
 
 use super::{
-    LinkError, Linker, MODULES, Reflection, constant,
+    LinkError, Linker, Reflection, constant, modules,
     scan::{code, declared, identifiers, split_imports},
 };
 
@@ -89,7 +89,7 @@ fn light_variants() -> Vec<Vec<(String, u32)>> {
 #[test]
 fn every_module_is_valid_by_itself_and_so_is_every_variant() {
     let mut entry_points = 0;
-    for (path, _) in MODULES {
+    for (path, _) in modules() {
         let linked = Linker::new().link(path);
         let shader = Reflection::of(linked, ValidationFlags::all());
         let shader = shader.unwrap_or_else(|error| panic!("{error}"));
@@ -128,7 +128,7 @@ fn every_module_is_valid_by_itself_and_so_is_every_variant() {
 #[test]
 fn modules_import_what_they_use_and_nothing_else() {
     let owners: HashMap<&str, Vec<&str>> =
-        MODULES.iter().fold(HashMap::new(), |mut all, module| {
+        modules().iter().fold(HashMap::new(), |mut all, module| {
             for name in module.1.lines().filter_map(declared) {
                 all.entry(name).or_insert_with(Vec::new).push(module.0);
             }
@@ -137,7 +137,7 @@ fn modules_import_what_they_use_and_nothing_else() {
     for (name, modules) in &owners {
         assert_eq!(modules.len(), 1, "{name} is declared by {modules:?}");
     }
-    for (path, text) in MODULES {
+    for (path, text) in modules() {
         let (imports, own) = split_imports(text, "tyndall").expect("good imports");
         let imported: BTreeSet<&str> = imports.iter().map(|import| &*import.name).collect();
         let used = used_names(&own);

@@ -3,6 +3,7 @@
 use super::{buffers::Buffers, surface::Sums};
 use crate::gpu::{
     pass::{Pass, Work},
+    pool::Owner,
     program::ScreenProgram,
     scope::{LightScope, Shared},
 };
