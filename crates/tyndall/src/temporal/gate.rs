@@ -1,6 +1,6 @@
-//! Passes that are recorded, and do nothing where nothing is stale.
+//! Makes passes do nothing where nothing is stale, though they are recorded.
 
-use super::gpu::Buffers;
+use super::buffers::Buffers;
 use crate::gpu::{
     pass::{Dispatch, Pass, Vertices, Work, Workgroups},
     pool::Owner,

@@ -83,13 +83,27 @@
 //! last pass, and its volumes are found anew each frame. About `ray-march` it is 2.6 times. Tried: asking the quarters of a
 //! tile that meets a change covered a thirtieth less and took half as long again to find.
 
+mod blocks;
+mod buffers;
+mod change;
+mod check;
+mod decide;
+mod frame;
 mod gate;
-mod gpu;
 mod history;
 mod options;
 mod passes;
+mod programs;
+mod reproject;
+mod restore;
+mod reuse;
+mod show;
+mod stencil;
+mod sum;
+mod tiles;
+mod wrap;
 
-pub(crate) use gpu::check;
+pub(crate) use check::check;
 pub(crate) use history::{History, Viewpoint};
 pub use options::{Reuse, ReuseMask, ReuseShow};
 pub(crate) use passes::passes;
