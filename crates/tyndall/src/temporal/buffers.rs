@@ -34,7 +34,7 @@ pub(super) struct Buffers {
     pub(super) map_seen: wgpu::Buffer,
     /// The depth buffer that the frame before saw.
     pub(super) depth_seen: wgpu::Buffer,
-    /// How long ago each pixel was computed.
+    /// Each pixel's memory, see `REUSE_AGE`.
     pub(super) age: wgpu::Buffer,
     /// The witness that the frame before saw.
     pub(super) witness_seen: wgpu::Buffer,

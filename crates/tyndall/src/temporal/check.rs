@@ -28,7 +28,7 @@ pub(crate) fn check(reuse: &Reuse, request: &LightRequest<'_>) -> Result<(), Pre
         });
     }
     if reuse.mask == ReuseMask::Geometry {
-        // What moved stands there twice.
+        // Occluders that moved stand there twice.
         let occluders = inputs.occluders.unwrap_or_default();
         check_list(limits, index, &occluders.repeat(2))?;
     }
@@ -36,7 +36,7 @@ pub(crate) fn check(reuse: &Reuse, request: &LightRequest<'_>) -> Result<(), Pre
         let size = map.texture().size();
         u64::from(size.width) * u64::from(size.height) * u64::from(light.faces())
     });
-    // The map takes a word a texel, depth and age one a pixel each, what is found in another camera's picture four.
+    // The map takes a word a texel, depth and age one a pixel each, pixels found in another camera's image four.
     let pixel = if reuse.reproject.is_some() { 16 } else { 4 };
     let needed = (4 * texels).max(pixel * u64::from(width) * u64::from(height));
     let of = format!("temporal reuse (lights[{index}])");

@@ -9,19 +9,19 @@ use crate::{
     techniques::Reach,
 };
 
-/// What a frame knows of a light's reuse before the light's passes are made.
+/// A light's reuse in a frame, before the light's passes are made.
 pub(crate) struct Frame<'a> {
     pub(crate) reuse: Reuse,
     pub(crate) generations: Generations,
     pub(crate) reach: Reach,
-    /// Where the frame recorded last was seen from.
+    /// The viewpoint of the frame recorded last.
     pub(crate) before: Option<Viewpoint>,
-    /// What moved, for the geometry's mask.
+    /// Occluders that moved, for the geometry's mask.
     pub(crate) moved: &'a [Placed],
 }
 
 impl Frame<'_> {
-    /// What may be wrong with a pixel of another camera's picture, where any is kept at all: pixels have to be computed
+    /// The other camera, and the tolerated error of its pixels, where any is kept at all: pixels have to be computed
     /// each on its own, and the light's shadows be asked at any point.
     pub(super) fn reprojection(&self, light: &Light) -> Option<(Viewpoint, f32)> {
         let is_fit = matches!(self.reach, Reach::Pixels(_))

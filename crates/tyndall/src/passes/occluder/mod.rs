@@ -1,4 +1,4 @@
-//! What blocks light, as triangles: for techniques that bound the shadows on a view ray by geometry.
+//! Occluders, as triangles: for techniques that bound the shadows on a view ray by geometry.
 //!
 //! The volume that a triangle shadows is the infinite prism (sun) or pyramid (local light) behind it. A mesh shadows the
 //! union of its triangles' volumes, whose boundary is made of
@@ -11,7 +11,7 @@
 //! needed: an edge of one triangle, or of more than two, always has its wall. No shadow is missing from the boundary of
 //! any set of triangles (Wyman & Ramsey 2008 need closed meshes).
 //!
-//! Where there is a shadow map, pieces whose texels are all covered from nearer to the light are left out: their shadow is
+//! Given a shadow map, pieces whose texels are all covered from nearer to the light are left out: their shadow is
 //! inside that of what covers them. Of a dragon lit from the side that leaves a fraction of its silhouettes.
 //!
 //! A conservative rasteriser in compute (`bounds.wesl`) finds where they begin and end along the rays of each tile of

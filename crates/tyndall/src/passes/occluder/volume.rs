@@ -78,9 +78,9 @@ pub(super) struct Volumes<'a> {
     params: Blocks<ParamsUniform>,
     /// Elements and places of the walls and caps that are rasterised.
     pub(super) list: wgpu::Buffer,
-    /// How many walls and caps a run has there.
+    /// The numbers of walls and caps that a run has there.
     pub(super) counts: wgpu::Buffer,
-    /// Whether the eye is in a shadow.
+    /// One number: 1 where the eye is in a shadow.
     pub(super) eye: wgpu::Buffer,
     /// View depths between which a tile's rays meet boundaries.
     pub(super) tiles: wgpu::Buffer,
