@@ -291,7 +291,7 @@ fn svd_agrees_with_the_closed_forms() {
             let found = stage.on_cpu(svd(rank));
             let error = compare(&found, &analytic).expect("same size").rel_mae;
             assert!(error < bound, "{}, {rank}: {error}", stage.name);
-            // Where the terms are exact what is left is the interpolation between samples of the factors.
+            // Where the terms are exact, there is left the interpolation between samples of the factors.
             let more_is_better = error <= fewer + 1e-4;
             assert!(more_is_better, "{}, {rank}: {error} {fewer}", stage.name);
             fewer = error;

@@ -44,7 +44,7 @@ fn some_stages() -> Vec<Stage> {
     some.chain([crowd()]).collect()
 }
 
-/// Every sample marched: what is left is the way from slices to pixels, in pictures whose depths are noise.
+/// Every sample marched: there is left the interpolation from slices to pixels, in images whose depths are noise.
 #[test]
 fn it_agrees_with_marching_for_every_light_and_camera() {
     let Some(gpu) = device_or_skip("epipolar sampling against marching") else {

@@ -41,7 +41,7 @@ fn black<'a>(techniques: &TechniqueChoice) -> PlannedLight<'a> {
     }
 }
 
-/// What the passes of a frame's lights share.
+/// Resources that the passes of a frame's lights share.
 struct FrameParts<'a> {
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
@@ -61,10 +61,10 @@ impl FrameParts<'_> {
 }
 
 impl Effect {
-    /// All that can fail: checks the frame and its inputs, and uploads what the passes read.
+    /// Checks the frame and its inputs, and uploads what the passes read. All that can fail is done here.
     ///
     /// # Errors
-    /// Where the frame or an input is out of range, missing or of the wrong kind, or a light's technique cannot do it on
+    /// Fails if the frame or an input is out of range, missing or of the wrong kind, or a light's technique cannot do it on
     /// the GPU. The view then still holds the frame that was prepared before.
     pub fn prepare(
         &self,

@@ -2,7 +2,10 @@
 
 pub(crate) mod airlight;
 pub(crate) mod cache;
+mod camera;
+mod floats;
 pub(crate) mod layout;
+mod light;
 pub(crate) mod limits;
 pub(crate) mod pass;
 pub(crate) mod pool;

@@ -1,9 +1,10 @@
 //! A light's passes about any technique, kept from frame to frame.
 
 use super::{
-    gpu,
+    frame::Frame,
     history::{History, Signature},
     options::{Reuse, ReuseMask},
+    wrap::wrap,
 };
 use crate::{
     gpu::pool::Owner,
@@ -27,7 +28,7 @@ pub(crate) fn passes(
         ReuseMask::Change => Vec::new(),
         ReuseMask::Geometry => history.moved(scope.index, inputs.occluders.unwrap_or_default()),
     };
-    let frame = gpu::Frame {
+    let frame = Frame {
         reuse,
         generations: history.generations(scope.index, signature),
         reach: method.reach(),
@@ -45,5 +46,5 @@ pub(crate) fn passes(
     let with_lights_before = std::mem::replace(&mut scope.frame_group, alone);
     scope.stencil = Some(stencil);
     let own = method.passes(&mut scope);
-    gpu::wrap(own, &frame, (sum, with_lights_before), &mut scope)
+    wrap(own, &frame, (sum, with_lights_before), &mut scope)
 }

@@ -106,10 +106,10 @@ fn light(field: &str, light: &Light) -> Checked {
     let name = |key: &str| format!("{field}.emitter.{key}");
     match light.emitter {
         Emitter::Directional {
-            direction: way,
+            direction: travel,
             illuminance,
         } => {
-            direction(&name("direction"), way)?;
+            direction(&name("direction"), travel)?;
             not_negative(&name("illuminance"), illuminance)?;
         }
         Emitter::Point {

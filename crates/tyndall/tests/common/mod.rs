@@ -21,12 +21,12 @@ pub(crate) mod gpu;
 #[cfg(feature = "gpu")]
 pub(crate) mod run;
 
-/// Width and height of the pictures [pixels].
+/// Width and height of the images [pixels].
 pub(crate) const SIZE: [u32; 2] = [48, 36];
 const MAP: u32 = 64;
 const GLASS_LAYERS: u32 = 2;
 
-/// A frame and its pictures.
+/// A frame and its textures.
 #[derive(Clone)]
 pub(crate) struct Stage {
     pub(crate) name: String,
@@ -35,7 +35,7 @@ pub(crate) struct Stage {
     pub(crate) lights: Vec<StageLight>,
 }
 
-/// The pictures of one light.
+/// The textures of one light.
 #[derive(Clone)]
 pub(crate) struct StageLight {
     pub(crate) shadow_map: Option<ShadowMap>,
@@ -169,7 +169,7 @@ pub(crate) fn cameras() -> [(&'static str, Camera); 6] {
 
 const LIGHT: Vec3 = Vec3::new(-0.6, 2.2, -2.0);
 
-/// Lights with their shadow projections and picture placements.
+/// Lights with their shadow projections and texture placements.
 fn lights() -> Vec<(&'static str, Light)> {
     let direction = Vec3::new(0.3, -0.8, 0.4).normalize();
     let sun = Emitter::Directional {
@@ -313,7 +313,7 @@ pub(crate) fn light_texture() -> LightTexture {
     }
 }
 
-/// The pictures a light asks for.
+/// The textures a light asks for.
 pub(crate) fn pictures(light: &Light, with_glass: bool) -> StageLight {
     let (faces, reversed) = match light.shadow {
         Some(ShadowProjection::Cube { reversed_depth, .. }) => (6, reversed_depth),
@@ -389,7 +389,7 @@ pub(crate) fn perspective_stages() -> Vec<Stage> {
     stages
 }
 
-/// Lights that shine into the camera: stages with their epipole within the picture, and the way to it.
+/// Lights that shine into the camera: stages with their epipole within the image, and the direction to it.
 pub(crate) fn epipole_stages() -> Vec<(Stage, Vec3)> {
     let mut stages = stages();
     stages.retain(|s| s.name.contains("; towards the light; ") && s.lights[0].texture.is_none());
