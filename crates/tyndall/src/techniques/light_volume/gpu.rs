@@ -133,7 +133,7 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     let programs = scope.programs::<Programs>();
     let programs = programs.as_ref();
     let mut passes = Vec::new();
-    let mut sum = scope.shared.absent.light.clone();
+    let mut sum = scope.shared.bindings.no_light().clone();
     if let Some(extent) = extent(scope) {
         sum = sum_picture(programs.sum, scope);
         let bits = if programs.sum == wgpu::TextureFormat::Rgba32Float {
