@@ -56,7 +56,8 @@ impl FrameParts<'_> {
     /// Bind group 0 with these lights before.
     fn group(&self, effect: &Shared, lights_before: &wgpu::TextureView) -> wgpu::BindGroup {
         let (uniform, depth, airlight) = (&self.uniform, self.depth, &self.airlight);
-        effect.frame_group(self.device, uniform, depth, airlight, lights_before)
+        let bindings = &effect.bindings;
+        bindings.frame_group_of(self.device, uniform, depth, airlight, lights_before)
     }
 }
 
@@ -85,7 +86,7 @@ impl Effect {
             frame,
             lights.len(),
         );
-        let mut before = self.shared.absent.light.clone();
+        let mut before = self.shared.bindings.no_light().clone();
         for (index, light) in lights.iter().enumerate() {
             // The sum of the lights goes to and fro between two textures; the second is made with the second light.
             let sum = self.sum(device, &mut view.pool, view.size, index % 2);
@@ -127,7 +128,10 @@ impl Effect {
         let key = (Owner::Light(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);
         let group = |lights_before| parts.group(&self.shared, lights_before);
-        let light_group = self.shared.light_group(device, &uniform, inputs);
+        let light_group = self
+            .shared
+            .bindings
+            .light_group_of(device, &uniform, inputs);
         let mut scope = LightScope {
             device,
             queue,
@@ -150,7 +154,7 @@ impl Effect {
         Ok(match view.reuse {
             None => method.passes(&mut scope),
             Some(reuse) => {
-                let alone = group(&self.shared.absent.light);
+                let alone = group(self.shared.bindings.no_light());
                 temporal::passes(&mut view.history, (technique, method), reuse, scope, alone)
             }
         })
@@ -224,7 +228,7 @@ fn begin<'a>(
     let uniform = view
         .pool
         .uniform(device, queue, (Owner::View, "frame"), &uniform);
-    let airlight = effect.airlight(device, queue, frame);
+    let airlight = effect.bindings.airlight(device, queue, frame);
     FrameParts {
         device,
         queue,

@@ -1,4 +1,4 @@
-//! Bind group layouts that all passes share, and the textures that stand in for inputs a light does not have.
+//! Bind group layouts that all passes share, and the textures that stand in for inputs that are not there.
 
 use crate::shader::Reflection;
 
@@ -29,8 +29,9 @@ fn declared(
     })
 }
 
-/// Textures that are bound where a light has none of its own.
+/// Textures that are bound where a frame or a light has none of its own.
 pub(crate) struct Absent {
+    pub(crate) depth: wgpu::TextureView,
     pub(crate) shadow_map: wgpu::TextureView,
     pub(crate) glass: wgpu::TextureView,
     pub(crate) texture: wgpu::TextureView,
@@ -58,6 +59,7 @@ impl Absent {
         };
         use wgpu::{TextureFormat as Format, TextureViewDimension as Dimension};
         Self {
+            depth: texel(Format::Depth32Float, Dimension::D2),
             shadow_map: texel(Format::Depth32Float, Dimension::D2Array),
             glass: texel(Format::Rg32Uint, Dimension::D2Array),
             texture: texel(Format::Rgba8Unorm, Dimension::D2),

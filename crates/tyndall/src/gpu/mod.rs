@@ -1,6 +1,7 @@
 //! GPU machinery that knows nothing of techniques: passes, pipelines, resources, uniforms, timing.
 
 pub(crate) mod airlight;
+mod bindings;
 pub(crate) mod cache;
 mod camera;
 mod floats;
@@ -15,4 +16,5 @@ pub(crate) mod shader;
 mod timer;
 pub(crate) mod uniforms;
 
+pub use bindings::Bindings;
 pub use timer::PassTimer;

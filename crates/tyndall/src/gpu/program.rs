@@ -257,7 +257,7 @@ impl<P: Pipeline> Program<P> {
         let recipe = Recipe {
             entry_point,
             shader: shared.shaders.get(device, module),
-            shared: [shared.frame_layout.clone(), shared.light_layout.clone()],
+            shared: shared.bindings.layouts().map(Clone::clone),
             raster: Raster::full_screen(shared.output.into()),
             reads_light: true,
             constants: Vec::new(),

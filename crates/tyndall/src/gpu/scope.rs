@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    airlight::AirlightTextures,
+    bindings::Bindings,
     cache::{ProgramCache, Programs},
-    layout::{self, Absent},
     pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
     pool::{Owner, Pool},
     program::{ComputeProgram, ScreenProgram, Stencil},
@@ -14,120 +13,32 @@ use super::{
 };
 use crate::{
     camera::CameraRays,
-    frame::{Frame, Light, LightKind},
+    frame::{Frame, Light},
     inputs::{Count, CountValue, LightInputs, SurfaceShadows},
 };
 
 /// What all passes of an effect share.
 pub(crate) struct Shared {
-    pub(crate) frame_layout: wgpu::BindGroupLayout,
-    pub(crate) light_layout: wgpu::BindGroupLayout,
-    pub(crate) absent: Absent,
-    /// Bilinear, clamped to the edge.
-    pub(crate) sampler: wgpu::Sampler,
+    pub(crate) bindings: Bindings,
     /// Format of the in-scattered light.
     pub(crate) output: wgpu::TextureFormat,
     pub(crate) shaders: Shaders,
-    airlight: AirlightTextures,
     programs: ProgramCache,
 }
 
 impl Shared {
     pub(crate) fn new(device: &wgpu::Device, output: wgpu::TextureFormat) -> Self {
         Self {
-            frame_layout: layout::frame(device),
-            light_layout: layout::light(device),
-            absent: Absent::new(device),
-            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("tyndall bilinear"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            }),
+            bindings: Bindings::new(device),
             output,
             shaders: Shaders::default(),
-            airlight: AirlightTextures::default(),
             programs: ProgramCache::default(),
-        }
-    }
-
-    /// Bind group 0.
-    pub(crate) fn frame_group(
-        &self,
-        device: &wgpu::Device,
-        uniform: &wgpu::Buffer,
-        depth: &wgpu::TextureView,
-        airlight: &wgpu::TextureView,
-        lights_before: &wgpu::TextureView,
-    ) -> wgpu::BindGroup {
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tyndall frame"),
-            layout: &self.frame_layout,
-            entries: &[
-                buffer_entry(0, uniform),
-                texture_entry(1, depth),
-                texture_entry(2, lights_before),
-                texture_entry(3, airlight),
-            ],
-        })
-    }
-
-    /// Bind group 1.
-    pub(crate) fn light_group(
-        &self,
-        device: &wgpu::Device,
-        uniform: &wgpu::Buffer,
-        inputs: &LightInputs<'_>,
-    ) -> wgpu::BindGroup {
-        let absent = &self.absent;
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tyndall light"),
-            layout: &self.light_layout,
-            entries: &[
-                buffer_entry(0, uniform),
-                texture_entry(1, inputs.shadow_map.unwrap_or(&absent.shadow_map)),
-                texture_entry(2, inputs.glass.unwrap_or(&absent.glass)),
-                texture_entry(3, inputs.texture.unwrap_or(&absent.texture)),
-                wgpu::BindGroupEntry {
-                    binding: 4,
-                    resource: wgpu::BindingResource::Sampler(&self.sampler),
-                },
-            ],
-        })
-    }
-
-    /// The airlight tables of the frame's medium, one layer a component; only point and spot lights read them.
-    pub(crate) fn airlight(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        frame: &Frame,
-    ) -> wgpu::TextureView {
-        let is_read = |light: &Light| matches!(light.kind(), LightKind::Point | LightKind::Spot);
-        if frame.lights.iter().any(is_read) {
-            self.airlight.of(device, queue, &frame.medium)
-        } else {
-            self.absent.airlight.clone()
         }
     }
 
     /// The effect's programs of this type.
     pub(crate) fn programs<P: Programs>(&self, device: &wgpu::Device) -> Arc<P> {
         self.programs.get(|| P::new(device, self))
-    }
-}
-
-fn buffer_entry(binding: u32, buffer: &wgpu::Buffer) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry {
-        binding,
-        resource: buffer.as_entire_binding(),
-    }
-}
-
-fn texture_entry(binding: u32, view: &wgpu::TextureView) -> wgpu::BindGroupEntry<'_> {
-    wgpu::BindGroupEntry {
-        binding,
-        resource: wgpu::BindingResource::TextureView(view),
     }
 }
 

@@ -70,6 +70,11 @@ pub struct Linked {
 }
 
 impl Linked {
+    /// True where a module in the text declares this name.
+    pub fn declares(&self, name: &str) -> bool {
+        self.wgsl.lines().filter_map(declared).any(|d| d == name)
+    }
+
     /// The module and the line there of a line of the text, from 1.
     pub fn origin(&self, line: usize) -> Option<(&str, usize)> {
         let (first, path) = self

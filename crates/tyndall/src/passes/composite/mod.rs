@@ -12,9 +12,10 @@ impl Composite {
     pub(crate) fn new(device: &wgpu::Device, shared: &Shared, target: wgpu::TextureFormat) -> Self {
         use wgpu::BlendFactor::{Dst, One, Zero};
         let shader = shared.shaders.get(device, "passes::composite::composite");
+        let [frame_layout, _] = shared.bindings.layouts();
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("composite"),
-            bind_group_layouts: &[Some(&shared.frame_layout)],
+            bind_group_layouts: &[Some(frame_layout)],
             immediate_size: 0,
         });
         let component = |src_factor, dst_factor| wgpu::BlendComponent {

@@ -78,7 +78,7 @@ pub(crate) fn build(
     let mut draws = Vec::new();
     for layer in 0..faces {
         let face = scope.uniform(FACES[layer as usize], &[layer, 0, 0, 0]);
-        let mut above = scope.shared.absent.light.clone();
+        let mut above = scope.shared.bindings.no_light().clone();
         for level in 0..levels {
             let target = texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),

@@ -28,7 +28,7 @@ impl Sums {
         Self {
             lit: scope.storage("light on surfaces", bytes),
             all: scope.storage("unblocked light on surfaces", bytes),
-            normals: normals.unwrap_or(&scope.shared.absent.light).clone(),
+            normals: normals.unwrap_or(scope.shared.bindings.no_light()).clone(),
         }
     }
 

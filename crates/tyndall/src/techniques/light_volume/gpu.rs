@@ -55,7 +55,7 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     let programs = scope.programs::<Programs>();
     let programs = programs.as_ref();
     let mut passes = Vec::new();
-    let mut sum = scope.shared.absent.light.clone();
+    let mut sum = scope.shared.bindings.no_light().clone();
     if let Some(extent) = extent(scope) {
         sum = surface::sum_texture(&programs.surface, scope);
         let bits = programs.surface.bits_of_sum();
