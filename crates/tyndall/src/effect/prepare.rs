@@ -34,10 +34,15 @@ fn black<'a>(techniques: &TechniqueChoice) -> PlannedLight<'a> {
         shadow: None,
         texture: None,
     };
+    let technique = techniques.of(0, &light, Backends::Gpu);
     PlannedLight {
         light,
         inputs: LightInputs::default(),
-        technique: techniques.of(0, &light, Backends::Gpu),
+        technique: if technique.info().can(light.kind(), Backends::Gpu) {
+            technique
+        } else {
+            Technique::default()
+        },
     }
 }
 

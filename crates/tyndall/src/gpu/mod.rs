@@ -2,6 +2,7 @@
 
 pub(crate) mod airlight;
 mod bindings;
+mod by_type;
 pub(crate) mod cache;
 mod camera;
 mod floats;
@@ -13,6 +14,7 @@ pub(crate) mod pool;
 pub(crate) mod program;
 pub(crate) mod scope;
 pub(crate) mod shader;
+pub(crate) mod shared;
 mod timer;
 pub(crate) mod uniforms;
 

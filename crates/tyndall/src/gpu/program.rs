@@ -5,7 +5,7 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use super::{scope::Shared, shader::Shader, uniforms::LightVariant};
+use super::{shader::Shader, shared::Shared, uniforms::LightVariant};
 
 /// Format of stencils.
 pub(crate) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
+pub(crate) use super::shared::Shared;
 use super::{
-    bindings::Bindings,
-    cache::{ProgramCache, Programs},
+    cache::Programs,
     pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
     pool::{Owner, Pool},
     program::{ComputeProgram, ScreenProgram, Stencil},
-    shader::Shaders,
     uniforms::LightVariant,
 };
 use crate::{
@@ -16,31 +15,6 @@ use crate::{
     frame::{Frame, Light},
     inputs::{Count, CountValue, LightInputs, SurfaceShadows},
 };
-
-/// What all passes of an effect share.
-pub(crate) struct Shared {
-    pub(crate) bindings: Bindings,
-    /// Format of the in-scattered light.
-    pub(crate) output: wgpu::TextureFormat,
-    pub(crate) shaders: Shaders,
-    programs: ProgramCache,
-}
-
-impl Shared {
-    pub(crate) fn new(device: &wgpu::Device, output: wgpu::TextureFormat) -> Self {
-        Self {
-            bindings: Bindings::new(device),
-            output,
-            shaders: Shaders::default(),
-            programs: ProgramCache::default(),
-        }
-    }
-
-    /// The effect's programs of this type.
-    pub(crate) fn programs<P: Programs>(&self, device: &wgpu::Device) -> Arc<P> {
-        self.programs.get(|| P::new(device, self))
-    }
-}
 
 /// One light of a frame that is being prepared.
 pub(crate) struct LightScope<'a> {
