@@ -723,17 +723,17 @@ fn glass_that_has_no_effect_is_said() {
     }
 }
 
-/// A sun and a rectangular light among slats, either or both, each with its own technique.
+/// A sun and a rectangular light over a hairball, either or both, each with its own technique.
 fn sun_and_panel(sun: Option<&str>, panel: Option<&str>) -> String {
     let (before, after) = SHOT.split_once("[[light]]").unwrap();
     let (light, medium) = after.split_once("[medium]").unwrap();
-    let before = before.replace("builtin:empty", "builtin:slats");
+    let before = before.replace("builtin:empty", "builtin:hairball");
     let sun = sun.map(|name| {
         format!("[[light]]{light}shadow_map = 128\ntechnique = {{ name = \"{name}\" }}\n")
     });
     let panel = panel.map(|name| {
         format!(
-            "[[light]]\ntype = \"rect\"\nradiance = [9, 9, 9]\nvpls = 9\n{PANEL}technique = {{ name = \"{name}\" }}\n"
+            "[[light]]\ntype = \"rect\"\nradiance = [90, 90, 90]\nvpls = 9\n{PANEL}technique = {{ name = \"{name}\" }}\n"
         )
     });
     let lights = [sun, panel].map(Option::unwrap_or_default).concat();
@@ -776,7 +776,8 @@ fn a_sun_and_a_rectangular_light_are_rendered_each_by_its_own_technique() {
         let sum = Picture::new(sun.size(), sum.collect()).unwrap();
         let error = compare(&both, &sum).unwrap().rel_mae;
         eprintln!("{backend}: {error:.1e}");
-        assert!(error < 2e-7, "{backend}: {error}");
+        // Measured: 2.2e-8 on the CPU, 2.0e-8 on lavapipe (2026-11-28): rounding to f32.
+        assert!(error < 4e-8, "{backend}: {error}");
         for one in [&sun, &panel] {
             assert!(compare(one, &sum).unwrap().rel_mae > 0.05, "{backend}");
         }

@@ -126,8 +126,7 @@ fn measure(
     bench: &Bench,
     progress: &mut Progress,
 ) -> Result<Vec<Vec<Cell>>, Failure> {
-    let mut small = shot_frame.clone();
-    small.size = shot_frame.size.map(|side| (side / REDUCTION).max(1));
+    let small = paper::reduced(shot_frame, REDUCTION);
     let small_drawn = DrawnFrame::new(&small, &bench.backend, progress)?;
     let techniques: Vec<Technique> = MESHES
         .iter()

@@ -1,10 +1,13 @@
 //! Plots as SVG: error against time, and the legends of the error pictures.
 
+use std::ops::Range;
+
 use plotters::{
     prelude::{
-        ChartBuilder, Circle, Color, DashedLineSeries, DrawingAreaErrorKind, EmptyElement,
-        IntoDrawingArea, IntoLogRange, IntoTextStyle, LineSeries, PathElement, RGBColor, Rectangle,
-        SVGBackend, SeriesLabelPosition, TRANSPARENT, Text,
+        Cartesian2d, ChartBuilder, ChartContext, Circle, Color, DashedLineSeries,
+        DrawingAreaErrorKind, EmptyElement, IntoDrawingArea, IntoLogRange, IntoTextStyle,
+        LineSeries, LogCoord, PathElement, RGBColor, Rectangle, SVGBackend, SeriesLabelPosition,
+        TRANSPARENT, Text,
     },
     style::text_anchor::{HPos, Pos, VPos},
 };
@@ -113,27 +116,10 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
             .y_label_formatter(&number)
             .draw()?;
         if let Some(floor) = floor {
-            let line = [(ends.start, floor), (ends.end, floor)];
-            let style = INK.mix(0.6).stroke_width(1);
-            chart
-                .draw_series(DashedLineSeries::new(line, 6, 4, style))?
-                .label("converged shadow map")
-                .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], INK.mix(0.6)));
+            draw_floor(&mut chart, ends, floor)?;
         }
         for (series, color) in series.iter().zip(SERIES.iter().cycle()) {
-            let positions = || series.points.iter().map(|point| (point.time, point.error));
-            let mark = |position| Circle::new(position, 4, color.filled());
-            chart
-                .draw_series(LineSeries::new(positions(), color.stroke_width(2)))?
-                .label(&series.name)
-                .legend(|(x, y)| Circle::new((x + 8, y), 5, color.filled()));
-            chart.draw_series(positions().map(mark))?;
-            let font = ("sans-serif", 16).into_text_style(&area);
-            let font = font.color(color).pos(Pos::new(HPos::Left, VPos::Bottom));
-            chart.draw_series(series.points.iter().map(|point| {
-                let offset = Text::new(point.label.to_owned(), (7, -3), font.clone());
-                EmptyElement::at((point.time, point.error)) + offset
-            }))?;
+            draw_series(&mut chart, series, *color)?;
         }
         chart
             .configure_series_labels()
@@ -145,6 +131,42 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
         area.present()?;
     }
     Ok(svg)
+}
+
+/// A chart with logarithmic axes.
+type LogChart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+
+/// A dashed line from end to end at the error of the converged shadow map [percent].
+fn draw_floor(chart: &mut LogChart<'_, '_>, ends: Range<f64>, floor: f64) -> Result<(), Failed> {
+    let line = [(ends.start, floor), (ends.end, floor)];
+    let style = INK.mix(0.6).stroke_width(1);
+    chart
+        .draw_series(DashedLineSeries::new(line, 6, 4, style))?
+        .label("converged shadow map")
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], INK.mix(0.6)));
+    Ok(())
+}
+
+/// A technique's line, its marks and their labels.
+fn draw_series(
+    chart: &mut LogChart<'_, '_>,
+    series: &Series<'_>,
+    color: RGBColor,
+) -> Result<(), Failed> {
+    let positions = || series.points.iter().map(|point| (point.time, point.error));
+    let mark = |position| Circle::new(position, 4, color.filled());
+    chart
+        .draw_series(LineSeries::new(positions(), color.stroke_width(2)))?
+        .label(&series.name)
+        .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
+    chart.draw_series(positions().map(mark))?;
+    let font = ("sans-serif", 16).into_text_style(chart.plotting_area());
+    let font = font.color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
+    chart.draw_series(series.points.iter().map(|point| {
+        let offset = Text::new(point.label.to_owned(), (7, -3), font.clone());
+        EmptyElement::at((point.time, point.error)) + offset
+    }))?;
+    Ok(())
 }
 
 /// The colours of an error picture with their numbers.
@@ -247,7 +269,7 @@ fn is_placed(value: f64) -> bool {
 }
 
 /// The decades that hold all values, at least one; 1 to 10 where there is none.
-fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
         (low.min(value), high.max(value))
     });

@@ -48,17 +48,16 @@ pub(super) fn render(
     } else {
         Vec::new()
     };
-    let pixels = |layer| match layer {
-        Layer::Inscatter => in_scatter.clone(),
-        Layer::Surface => surface.clone(),
-        Layer::Final => composite(shot_frame, &g_buffer.depth, &surface, &in_scatter),
-        Layer::Depth | Layer::Transmittance => {
-            depth_layer(layer, shot_frame, &g_buffer.depth).pixels
-        }
-    };
-    let picture = |layer| Picture {
-        size,
-        pixels: pixels(layer),
+    let picture = |layer| {
+        let pixels = match layer {
+            Layer::Inscatter => in_scatter.clone(),
+            Layer::Surface => surface.clone(),
+            Layer::Final => composite(shot_frame, &g_buffer.depth, &surface, &in_scatter),
+            Layer::Depth | Layer::Transmittance => {
+                return depth_layer(layer, shot_frame, &g_buffer.depth);
+            }
+        };
+        Picture { size, pixels }
     };
     Ok(Rendered {
         layers: layers

@@ -665,7 +665,7 @@ fn a_wrong_technique_of_a_light_names_its_line_and_key() {
         ),
         (
             "{ name = \"vsv\", resolution = 0 }",
-            "shot.toml:21: light.1.technique.resolution: expected a whole number from ",
+            "shot.toml:21: light.1.technique.resolution: expected 64, 128, 256, 512 or 1024, found 0",
         ),
         (
             "\"vsv\"",

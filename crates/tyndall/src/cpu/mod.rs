@@ -22,7 +22,7 @@ pub use crate::{
     shadow::{Occluders, Shade},
 };
 
-/// In-scattered light of a picture.
+/// In-scattered light of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InScatter {
     /// Width and height [pixels].

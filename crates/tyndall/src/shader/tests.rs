@@ -101,6 +101,11 @@ fn every_module_is_valid_by_itself_and_so_is_every_variant() {
         let shader = shader.unwrap_or_else(|error| panic!("{error}"));
         let (module, info) = shader.naga();
         entry_points += module.entry_points.len();
+        let has = |stage| module.entry_points.iter().any(|entry| entry.stage == stage);
+        assert!(
+            !has(naga::ShaderStage::Fragment) || has(naga::ShaderStage::Vertex),
+            "{path} draws without vertices: it imports no vertex stage"
+        );
         let declared = |name: &String| shader.has_override(name);
         let variants: BTreeSet<Vec<(String, u32)>> = light_variants()
             .into_iter()

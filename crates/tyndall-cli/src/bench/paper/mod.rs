@@ -7,4 +7,4 @@ mod scene;
 mod suite;
 
 pub(super) use run::run;
-pub(super) use suite::{Paper, REDUCTION, contender, nothing};
+pub(super) use suite::{Paper, REDUCTION, contender, nothing, reduced};

@@ -2,7 +2,7 @@
 
 use super::{
     quality::{QUALITY_COLUMNS, Quality, contenders, quality, quality_row},
-    suite::{BUDGET, Paper, nothing, techniques},
+    suite::{BUDGET, Paper, nothing, reduced, techniques},
 };
 use crate::{
     bench::{
@@ -23,8 +23,7 @@ pub(super) fn measure_scene(
     bench: &Bench,
     progress: &mut Progress,
 ) -> Result<Vec<Table>, Failure> {
-    let mut small = shot_frame.clone();
-    small.size = shot_frame.size.map(|side| (side / paper.reduction).max(1));
+    let small = reduced(shot_frame, paper.reduction);
     let small_drawn = DrawnFrame::new(&small, &bench.backend, progress)?;
     let candidates = techniques(paper, &small_drawn);
     if candidates.is_empty() {

@@ -6,6 +6,7 @@ use tyndall::techniques::{Technique, Value};
 
 use crate::{
     bench::{subject::Subject, table::Table},
+    load::ShotFrame,
     measure::{Budget, DrawnFrame},
 };
 
@@ -66,6 +67,14 @@ pub(super) fn techniques(paper: &Paper, drawn: &DrawnFrame<'_>) -> Vec<(&'static
 
 pub(super) fn is_march(technique: &Technique) -> bool {
     matches!(technique, Technique::RayMarch(_))
+}
+
+/// A frame that is so many times smaller on each side.
+pub(in crate::bench) fn reduced(shot_frame: &ShotFrame, reduction: u32) -> ShotFrame {
+    ShotFrame {
+        size: shot_frame.size.map(|side| (side / reduction).max(1)),
+        ..shot_frame.clone()
+    }
 }
 
 /// A table that says that there is nothing to measure.

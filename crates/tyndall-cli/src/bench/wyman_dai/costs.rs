@@ -15,7 +15,7 @@ use crate::{
     },
     failure::Failure,
     load::ShotFrame,
-    measure::DrawnFrame,
+    measure::{DrawnFrame, Timing},
     progress::Progress,
 };
 
@@ -48,15 +48,7 @@ pub(super) fn costs(
         ivsv("quarter", true)?,
         ivsv("full", true)?,
     ];
-    let samples = shot_frame
-        .frame
-        .lights
-        .iter()
-        .map(|light| match light.emitter {
-            Emitter::Rect { samples, .. } => samples,
-            _ => 1,
-        });
-    let samples: u32 = samples.sum();
+    let samples = samples(shot_frame);
     let lamp = with_lamp(shot_frame.clone());
     let mut rows = Vec::new();
     let mut of_hard = 0.0;
@@ -70,20 +62,10 @@ pub(super) fn costs(
             drawn.time(techniques, &BUDGET)
         })?;
         for (technique, timing) in &timings.techniques {
-            let ms = timing.total().median;
             if of_hard == 0.0 {
-                of_hard = ms;
+                of_hard = timing.total().median;
             }
-            rows.push(vec![
-                Cell::text(label(technique)),
-                timing.total().into(),
-                Cell::Number(ms / of_hard),
-                timing.wall.into(),
-                Cell::Count(timing.passes.len() as u64),
-                Cell::Count(side * side * grids),
-                Cell::mebibytes(Some(side.pow(3) / 8 * grids)),
-                Cell::mebibytes(timing.bytes),
-            ]);
+            rows.push(cost_row(technique, timing, of_hard, side, grids));
         }
     }
     Ok(Table {
@@ -95,6 +77,36 @@ pub(super) fn costs(
         columns: COSTS.to_vec(),
         rows,
     })
+}
+
+/// A technique's row; `of_hard` is the time of the hard shadow volume [ms], `side` the voxels a side of its `grids`.
+fn cost_row(
+    technique: &Technique,
+    timing: &Timing,
+    of_hard: f64,
+    side: u64,
+    grids: u64,
+) -> Vec<Cell> {
+    vec![
+        Cell::text(label(technique)),
+        timing.total().into(),
+        Cell::Number(timing.total().median / of_hard),
+        timing.wall.into(),
+        Cell::Count(timing.passes.len() as u64),
+        Cell::Count(side * side * grids),
+        Cell::mebibytes(Some(side.pow(3) / 8 * grids)),
+        Cell::mebibytes(timing.bytes),
+    ]
+}
+
+/// Samples of all lights.
+fn samples(shot_frame: &ShotFrame) -> u32 {
+    let lights = shot_frame.frame.lights.iter();
+    let samples = lights.map(|light| match light.emitter {
+        Emitter::Rect { samples, .. } => samples,
+        _ => 1,
+    });
+    samples.sum()
 }
 
 fn label(technique: &Technique) -> String {

@@ -56,24 +56,6 @@ fn facts(report: &Report) -> Html {
         .iter()
         .map(|(key, value)| format!("{key} {value}"))
         .collect();
-    let floor = report.floor.as_ref().map_or_else(
-        || "the reference reads the same shadow maps".to_owned(),
-        |floor| {
-            format!(
-                "relMAE {} against the reference",
-                table::percent(floor.rel_mae)
-            )
-        },
-    );
-    let limit = report.limit.as_ref().map_or_else(
-        || "not measured on the CPU".to_owned(),
-        |limit| {
-            format!(
-                "{} ms: depth and shadow map read once, output written once",
-                table::milliseconds(&limit.total())
-            )
-        },
-    );
     [
         ("Shot", report.subject.shot.clone()),
         ("Scene", report.subject.scene.clone()),
@@ -83,8 +65,8 @@ fn facts(report: &Report) -> Html {
             "Reference",
             format!("{}: {}", report.reference.technique, parameters.join(", ")),
         ),
-        ("Shadow maps", floor),
-        ("Limit", limit),
+        ("Shadow maps", floor(report)),
+        ("Limit", limit(report)),
         (
             "Exposure",
             format!("{:.2} EV, all pictures", report.exposure),
@@ -99,6 +81,32 @@ fn facts(report: &Report) -> Html {
         Html::trusted(&format!("<div><dt>{term}</dt><dd>{fact}</dd></div>\n"))
     })
     .collect()
+}
+
+/// The shadow maps' own error, in words.
+fn floor(report: &Report) -> String {
+    report.floor.as_ref().map_or_else(
+        || "the reference reads the same shadow maps".to_owned(),
+        |floor| {
+            format!(
+                "relMAE {} against the reference",
+                table::percent(floor.rel_mae)
+            )
+        },
+    )
+}
+
+/// The limit's time, in words.
+fn limit(report: &Report) -> String {
+    report.limit.as_ref().map_or_else(
+        || "not measured on the CPU".to_owned(),
+        |limit| {
+            format!(
+                "{} ms: depth and shadow map read once, output written once",
+                table::milliseconds(&limit.total())
+            )
+        },
+    )
 }
 
 fn notes(report: &Report, viewer: &Viewer) -> Html {

@@ -1,4 +1,4 @@
-//! The epipolar grid as shaders see it: `epipolar.wgsl`.
+//! The epipolar grid for shaders: the uniform of `epipolar.wesl`.
 
 use glam::DVec3;
 
@@ -59,7 +59,7 @@ impl EpipolarUniform {
             tint_start: grid.tint_range[0] as f32,
             tint_step: ((grid.tint_range[1] - grid.tint_range[0]) / tint_columns as f64) as f32,
             tint_columns: tint_columns as u32,
-            turns: u32::from(grid.slices.is_whole_turn()),
+            turns: u32::from(grid.slices.is_full_turn()),
             position: floats(grid.light - grid.eye),
             pad: 0,
         }
@@ -90,7 +90,8 @@ impl EpipolarUniform {
     };
 }
 
-/// What is made of a prepared light as a grid sees it, `side` texels of its map a side; `None` of a light without a model.
+/// Makes something of a prepared light, given as grids see it, with `side` texels of its map a side; `None` of a light
+/// without a model.
 pub(crate) fn with_scene<T>(
     scope: &LightScope<'_>,
     side: usize,

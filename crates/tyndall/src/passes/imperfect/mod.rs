@@ -10,7 +10,12 @@
 //! of the square unused. Each sample's is turned about the light's normal by another angle, so that texels of different
 //! samples don't line up.
 
+pub(crate) mod area;
+pub(crate) mod buffers;
+mod colors;
 pub(crate) mod gpu;
+mod pull_push;
+mod splat;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "silhouette shadow volumes bound the shadows: closed forms outside, steps between",
     citation: "Wyman & Ramsey, Interactive Volumetric Shadows in Participating Media with Single-Scattering, IEEE Interactive Ray Tracing 2008",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: true,

@@ -4,9 +4,9 @@
 //! each has wrong, so that each may be coarse; and coarse ones can be made all at once. A frame has seven passes, however
 //! many the samples (more only where the device binds no buffer that is large enough for all):
 //!
-//! 1. **sample light**: Halton's points of the rectangle, each with its share of the light, in the colour of its picture;
+//! 1. **sample light**: Halton's points of the rectangle, each with its share of the light, in the colour of its texture;
 //! 2. **splat points** and 3. **pull-push**: a hemispherical shadow map a sample, made of its own block of the caller's
-//!    [`PointCloud`](crate::PointCloud), see `shadow/imperfect/`;
+//!    [`PointCloud`](crate::PointCloud), see `passes/imperfect/`;
 //! 4. **voxelize**: each map resampled to its sample's epipolar grid, one voxel a light ray;
 //! 5. **scan**: the OR along the light rays of all grids;
 //! 6. **gather**: each pixel adds up what it sees of every sample; 7. **resolve** writes the output.
@@ -25,7 +25,7 @@
 //! nearest slices; along the columns a ray's ends cut voxels, which count in part.
 //!
 //! - `weighting = "airlight"` weighs each panel's voxels with that panel's light; `"uniform"` takes the share of lit voxels
-//!   of the whole row, as the paper's pseudocode does. They cost the same. Relative error before ray-traced donuts: 0.0152
+//!   of the entire row, as the paper's pseudocode does. They cost the same. Relative error before ray-traced donuts: 0.0152
 //!   and 0.0180.
 //! - `gather = "interleaved"`: a pixel takes a ninth of the samples, and 3 x 3 of them are put together where their depths are
 //!   alike; `"quarter"` gathers one pixel of 2 x 2. Errors there: 0.0191 and 0.0199.
@@ -33,7 +33,7 @@
 //!
 //! # Shadows on surfaces
 //!
-//! Where they are asked for ([`EffectView::set_surface_shadows`](crate::EffectView::set_surface_shadows)), two more passes
+//! If they are asked for ([`EffectView::set_surface_shadows`](crate::EffectView::set_surface_shadows)), two more passes
 //! read the same voxels: **light surfaces** adds up what every sample would send to the end of a pixel's ray, and what of it
 //! arrives, and **resolve surfaces** divides the one by the other. A voxel is interpolated between two slices and two
 //! columns, not between rows, along which a shadow has one edge (section 3.3). Pixels take samples as `gather` says. Lest
@@ -59,7 +59,7 @@
 //!    1024   0.0175   0.0125   0.0103
 //! ```
 //!
-//! Much of what is left is the picture of the light itself: rays that pass the samples see them one by one, in the truth as
+//! Much of what is left is the image of the light itself: rays that pass the samples see them one by one, in the truth as
 //! here. Marching each sample's own map (`ray-march`, 64 steps) is 0.0150 wrong. Against the reference, both with 64
 //! samples, 160 x 120 pixels: an angel 0.028 (marched 0.040), a ball of thin tubes 0.027 (0.035), a city of 800 m under a
 //! panel of 18 m 0.043 (0.056).
@@ -72,7 +72,7 @@
 //!   passes is taken for blocked; with fewer, each stands for a disc of several texels, and what is thin grows fat. Of 128^2
 //!   texels, 8192, 16384 and 65536 points are 0.0147, 0.0152 and 0.0162 wrong of the donuts, 0.038, 0.027 and 0.033 of the
 //!   tubes.
-//! - `batched = false`: five passes a sample, the paper's naive form, with the same picture to the last bit.
+//! - `batched = false`: five passes a sample, the paper's naive form, with the same image to the last bit.
 //!
 //! # Cost
 //!
@@ -93,12 +93,12 @@
 //! 256 grids of 128^3 voxels are 64 MiB, four times one grid of 512^3, and their light rays sixteen times as many. A frame,
 //! gathered interleaved, takes 3.4 times one of a lamp with `vsv` at 512^3.
 //!
-//! # What was tried
+//! # Tried
 //!
-//! Four panels a row: a quarter of the time to gather less, error 0.018 in place of 0.015. Points as whole discs in place of
+//! Four panels a row: a quarter of the time to gather less, error 0.018 in place of 0.015. Points as entire discs in place of
 //! half their radius: occluders grew fat, 0.022 at 16384 points. Pull-push by workgroups of 16 x 16 with barriers: three
 //! times as slow as a block of 4 x 4 a thread. Four panels with the density's slope in each: a tenth less time to gather,
-//! error 0.018, and 0.016 with a guess of its curvature. Voxels that a ray's ends cut counted whole: a twentieth less,
+//! error 0.018, and 0.016 with a guess of its curvature. Voxels that a ray's ends cut counted entirely: a twentieth less,
 //! 0.016. Of no use on the software driver: directions of panels by rotation in place of cosine and sine, a loop over words
 //! around that over panels, stores only of words that a scan changes.
 //!
@@ -109,10 +109,20 @@
 //! tints nothing. Rays through the light itself show its samples. On the CPU it is refused by name.
 
 #[cfg(feature = "gpu")]
-pub(crate) mod gpu;
+mod buffers;
+#[cfg(feature = "gpu")]
+mod gather;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod params;
 #[cfg(feature = "gpu")]
+mod rectify;
+#[cfg(feature = "gpu")]
+mod resolve;
+#[cfg(feature = "gpu")]
 mod surface;
+#[cfg(feature = "gpu")]
+mod surface_resolve;
 
 pub use params::*;
 

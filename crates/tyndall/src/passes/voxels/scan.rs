@@ -1,38 +1,38 @@
-//! Grids of voxels in a storage buffer, one after another.
+//! The scan of grids of voxels, row by row.
 
-use crate::gpu::{
-    cache,
-    pass::Pass,
-    program::ComputeProgram,
-    scope::{LightScope, Shared},
+use crate::{
+    gpu::{
+        cache,
+        pass::Pass,
+        program::ComputeProgram,
+        scope::{LightScope, Shared},
+    },
+    shader::constant,
 };
 
-/// Bytes of one grid.
-pub(crate) fn bytes(side: u32) -> u64 {
-    u64::from(side).pow(3) / 8
-}
-
-/// Threads of a workgroup of `scan.wgsl`.
-const SCAN_THREADS: u32 = 64;
 /// Threads that share the rows of a word where words are few.
 const PARTS: u32 = 16;
 /// From so many words on a thread each keeps a device busy, and reads them once where several read them twice.
 const MANY_WORDS: u32 = 1 << 16;
 
-/// What `scan.wgsl` scans row by row: the words of a row, of all slices of so many grids.
+/// Columns of words that are scanned: the words of a row, of all slices of so many grids.
 pub(super) fn scan_columns(side: u32, grids: u32) -> u32 {
     grids * side * (side / 32)
 }
 
 /// Workgroups of a scan that shares the rows of a word out to so many threads.
 pub(super) fn scan_groups(columns: u32, parts: u32) -> [u32; 3] {
-    [columns.div_ceil(SCAN_THREADS / parts), 1, 1]
+    [
+        columns.div_ceil(constant("VOXEL_SCAN_THREADS") / parts),
+        1,
+        1,
+    ]
 }
 
 /// The scan of any number of grids.
 pub(crate) struct Scan {
     /// A thread a word.
-    whole: ComputeProgram,
+    by_word: ComputeProgram,
     /// [`PARTS`] threads a word.
     shared_out: ComputeProgram,
 }
@@ -45,14 +45,14 @@ impl cache::Programs for Scan {
                 .for_all_lights()
         };
         Self {
-            whole: program(1),
+            by_word: program(1),
             shared_out: program(PARTS),
         }
     }
 }
 
 impl Scan {
-    /// Of so many grids of side^3 voxels.
+    /// The scan of so many grids of side^3 voxels.
     pub(crate) fn pass(
         &self,
         scope: &mut LightScope<'_>,
@@ -64,7 +64,7 @@ impl Scan {
         let (program, parts) = if columns < MANY_WORDS {
             (&self.shared_out, PARTS)
         } else {
-            (&self.whole, 1)
+            (&self.by_word, 1)
         };
         let uniform = scope.uniform("voxels a side", &[side, columns, 0, 0]);
         let resources = [uniform.as_entire_binding(), voxels.as_entire_binding()];

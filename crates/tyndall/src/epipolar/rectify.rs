@@ -1,4 +1,4 @@
-//! The shadow map rectified to slices (Chen 2011, section 3.2) on the CPU: the twin of `rectify.wgsl`.
+//! The shadow map rectified to slices (Chen 2011, section 3.2) on the CPU: the twin of `rectify.wesl`.
 //!
 //! A leaf is a cell of light rays, as wide as the slice: it holds the least and the greatest S of all of them, so that
 //! a view ray anywhere in the slice that passes the test at a node is lit, or dark, all along it.
@@ -62,8 +62,8 @@ impl Cells<'_> {
     fn side(&self, alphas: [f64; 2], sample: usize) -> Side {
         let gamma = self.grid.gamma(sample);
         let corner = |alpha| {
-            let (origin, way) = self.grid.light_ray(alpha, gamma);
-            let line = self.shadows.line(origin, way)?;
+            let (origin, direction) = self.grid.light_ray(alpha, gamma);
+            let line = self.shadows.line(origin, direction)?;
             let texel = [line.uv.x * self.size[0], line.uv.y * self.size[1]];
             Some(Corner { line, texel })
         };
