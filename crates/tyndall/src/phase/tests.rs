@@ -198,8 +198,8 @@ fn wgsl_twins_agree() {
                 let exact = phases[i / 513].evaluate(f64::from(x[2]));
                 worst = worst.max((f64::from(found[0]) / exact - 1.0).abs());
             }
-            // Measured on lavapipe: see below.
-            assert!(worst < 1e-4, "{}: {worst:.1e}", TABLE[number as usize].name);
+            // Largest measured on lavapipe: 1.2e-5, of narrow peaks.
+            assert!(worst < 4e-5, "{}: {worst:.1e}", TABLE[number as usize].name);
         }
     }
 }
