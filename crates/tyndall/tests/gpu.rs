@@ -3,8 +3,8 @@
 mod common;
 
 use common::{
-    SIZE, Stage, crowd, epipole_stages, gpu as on, noise, perspective_stages, seam_errors, stages,
-    steps, svd, technique,
+    SIZE, Stage, crowd, epipole_stages, fog_stages, gpu as on, noise, perspective_stages,
+    seam_errors, stages, steps, svd, technique,
 };
 use tyndall::{
     CreateError, FrameInputs,
@@ -24,7 +24,7 @@ fn marching_agrees_with_the_cpu() {
         return;
     };
     let effect = on::effect(gpu);
-    for stage in stages().into_iter().chain([crowd()]) {
+    for stage in stages().into_iter().chain(fog_stages()).chain([crowd()]) {
         for spacing in ["equal", "equiangular"] {
             let spacing = ("spacing", Value::Word(spacing.into()));
             let march = technique("ray-march", &[steps(128), spacing.clone()]);

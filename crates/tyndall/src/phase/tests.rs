@@ -113,17 +113,17 @@ fn limits_are_the_simpler_functions() {
     }
 }
 
-/// The fit's own parameters at 10 um, worked out by hand, and the mean cosine of clouds, which is 0.8 to 0.9 by all measures.
+/// The fit's own parameters at 10 um, worked out by another program, and the mean cosine of clouds, which is 0.8 to 0.9 by all measures.
 #[test]
 fn droplets_are_the_published_fit() {
     let [(share, lobe), (rest, peak)] = droplets(10.0).expect("within the range");
     let close = |found: f64, exact: f64| assert!((found - exact).abs() < 1e-5, "{found}");
-    close(share, 0.481_946);
+    close(share, 0.481_955);
     close(share + rest, 1.0);
     let [g, alpha] = lobe.values().map(f64::from);
-    close(g, 0.555_711);
-    close(alpha, 21.995_85);
-    close(f64::from(peak.values()[0]), 0.988_176);
+    close(g, 0.555_671);
+    close(alpha, 21.995_521);
+    close(f64::from(peak.values()[0]), 0.988_177);
     for diameter in [5.0, 8.0, 12.0, 20.0, 35.0, 50.0] {
         let parts = droplets(diameter).expect("within the range");
         let mean: f64 = parts.iter().map(|(w, phase)| w * phase.mean_cosine()).sum();
@@ -198,8 +198,8 @@ fn wgsl_twins_agree() {
                 let exact = phases[i / 513].evaluate(f64::from(x[2]));
                 worst = worst.max((f64::from(found[0]) / exact - 1.0).abs());
             }
-            // Measured on lavapipe: see below.
-            assert!(worst < 1e-4, "{}: {worst:.1e}", TABLE[number as usize].name);
+            // Largest measured on lavapipe: 1.2e-5, of narrow peaks.
+            assert!(worst < 4e-5, "{}: {worst:.1e}", TABLE[number as usize].name);
         }
     }
 }

@@ -65,7 +65,8 @@ pub(crate) fn in_one_group(wgsl: &str) -> String {
     })
 }
 
-/// The values of the overrides that lights choose: kind with texture, shadow map with glass.
+/// The values of the overrides that lights and media choose: kind with texture, shadow map with glass, phase functions in
+/// turn.
 fn light_variants() -> Vec<Vec<(String, u32)>> {
     let lights = [(0, 0), (0, 1), (1, 0), (1, 3), (2, 0), (2, 2), (3, 0)];
     let shadows = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1)];
@@ -83,6 +84,11 @@ fn light_variants() -> Vec<Vec<(String, u32)>> {
     lights
         .into_iter()
         .flat_map(|light| shadows.map(|shadow| variant(light, shadow)))
+        .zip([0b1, 0b110, 0b1_1111].into_iter().cycle())
+        .map(|(mut variant, phases)| {
+            variant.push(("MEDIUM_PHASES".to_owned(), phases));
+            variant
+        })
         .collect()
 }
 

@@ -141,6 +141,27 @@ pub(crate) fn media() -> [(&'static str, Medium); 4] {
     .map(|(name, components)| (name, Medium { components }))
 }
 
+/// Media of the phase functions that [`media`] does not have: haze, dust, and the droplets of a fog.
+fn fogs() -> [(&'static str, Medium); 3] {
+    let haze = MediumComponent {
+        sigma_s: [0.03, 0.05, 0.08],
+        sigma_a: [0.01; 3],
+        phase: Phase::CornetteShanks { g: 0.5 },
+    };
+    let dust = MediumComponent {
+        phase: Phase::Draine { g: 0.6, alpha: 0.5 },
+        ..haze
+    };
+    let droplets = MediumComponent::fog_droplets([0.06; 3], [0.003; 3], 10.0);
+    let droplets = droplets.expect("a diameter of the fit");
+    [
+        ("haze", vec![haze]),
+        ("dust", vec![dust]),
+        ("droplets", droplets.to_vec()),
+    ]
+    .map(|(name, components)| (name, Medium { components }))
+}
+
 /// Cameras in a world of some ten metres about the origin; `TARGET` is where the local lights are.
 pub(crate) fn cameras() -> [(&'static str, Camera); 6] {
     let aspect = SIZE[0] as f32 / SIZE[1] as f32;
@@ -379,6 +400,24 @@ pub(crate) fn stages() -> Vec<Stage> {
             stages.push(stage(name, *camera, medium.clone(), light, glass));
         }
     }
+    stages
+}
+
+/// Sun, lamp and spot in each of the fogs, seen towards the light and from beside it.
+pub(crate) fn fog_stages() -> Vec<Stage> {
+    let (fogs, cameras) = (fogs(), cameras());
+    let mut stages = Vec::new();
+    for (light_name, light) in lights() {
+        if !["sun", "lamp", "spot"].contains(&light_name) {
+            continue;
+        }
+        for (j, (fog_name, medium)) in fogs.iter().enumerate() {
+            let (camera_name, camera) = &cameras[[0, 2, 0][j]];
+            let name = format!("{light_name}; {camera_name}; {fog_name}");
+            stages.push(stage(name, *camera, medium.clone(), light, false));
+        }
+    }
+    assert_eq!(stages.len(), 9);
     stages
 }
 
