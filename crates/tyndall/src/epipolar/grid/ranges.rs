@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use super::coordinates::{EpipolarGrid, angle_scale};
+use super::coordinates::EpipolarGrid;
+#[cfg(feature = "gpu")]
+use super::coordinates::angle_scale;
 use crate::{camera::CameraRays, light::LightSource, shadow::Face};
 
 /// Sine of the angle to the axis below which view rays are not decomposed: nearer than a tenth of a radian few terms do
