@@ -10,8 +10,8 @@ const LEAST_DISTANCE: f64 = 1e-6;
 /// The point of the image that all epipolar lines pass through, and the axis that all slices contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Epipole {
-    /// Homogeneous place on the image [pixels], z >= 0; with z = 0 the lines are parallel. Of an epipole behind the
-    /// camera it is the place opposite. Its largest component, in units of the image, is 1.
+    /// Homogeneous place on the image [pixels], z >= 0; with z = 0 the lines are parallel. An epipole behind the
+    /// camera has the place opposite. Its largest component, in units of the image, is 1.
     pub(crate) place: DVec3,
     /// Unit direction of the line through eye and light (orthographic: of the view rays), towards the light.
     pub(crate) axis: DVec3,

@@ -50,7 +50,7 @@ impl MinMaxTree {
     /// section 3.5).
     pub(super) fn next(&self, level: u32, index: usize) -> (u32, usize) {
         let next = index + 1;
-        let up = u32::from(next % 2 == 0 && level + 1 < self.levels);
+        let up = u32::from(next.is_multiple_of(2) && level + 1 < self.levels);
         (level + up, next >> up)
     }
 }

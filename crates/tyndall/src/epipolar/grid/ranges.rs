@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use super::coordinates::{EpipolarGrid, angle_scale};
+use super::coordinates::EpipolarGrid;
+#[cfg(feature = "gpu")]
+use super::coordinates::angle_scale;
 use crate::{camera::CameraRays, light::LightSource, shadow::Face};
 
 /// Sine of the angle to the axis below which view rays are not decomposed: nearer than a tenth of a radian few terms do
@@ -66,8 +68,8 @@ impl EpipolarGrid {
         ]
     }
 
-    /// The range of gamma that the image's rays and the light's map may have in common. What a ray meets beyond it
-    /// is walked, so that it need not be exact.
+    /// The range of gamma that the image's rays and the light's map may have in common. Parts of rays beyond it
+    /// are walked, so that it need not be exact.
     pub(super) fn gamma_range(&self, scene: &GridScene<'_>) -> [f64; 2] {
         let seen = self.gammas_seen(scene);
         let covered = match self.local {

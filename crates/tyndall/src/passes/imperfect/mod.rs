@@ -3,7 +3,7 @@
 //!
 //! Each sample draws its own block of the cloud: a point is projected on the hemisphere before the light and its
 //! distance kept where it is the least so far (an atomic minimum of the bits of a positive float). A point covers the
-//! texels of the disc it stands for, a single one far away. What stays empty is filled from its neighbours, coarser and
+//! texels of the disc it stands for, a single one far away. Empty texels are filled from their neighbours, coarser and
 //! coarser (pull), and back down (push).
 //!
 //! The projection is the upper half of an octahedron, turned by 45 degrees: unlike the paper's paraboloid it leaves no texel

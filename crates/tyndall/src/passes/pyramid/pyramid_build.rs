@@ -61,7 +61,7 @@ pub(crate) fn build(
     size: [u32; 2],
     faces: u32,
 ) -> (wgpu::TextureView, Pass) {
-    // Powers of two are halved without a rest; what lies beyond the texture repeats its border.
+    // Powers of two are halved without a rest; texels beyond the texture repeat its border.
     let [width, height] = size.map(|n| (n.next_power_of_two() / 2).max(1));
     let extent = wgpu::Extent3d {
         width,

@@ -21,7 +21,7 @@
 //!   exact. Relative error on 1280 x 960 pixels of terrain: 5e-4.
 //! - In its slice a ray is a straight line over columns of the shadow map, in the coordinates (t, z) that perspective keeps
 //!   straight; one that crosses a texel's depth is lit in part. So rays near the epipole, that cross few columns, need no
-//!   other treatment. Of a column both texels count that the slice's trace crosses, as far as it does: with one texel a
+//!   other treatment. Both texels of a column that the slice's trace crosses count, as far as it does: with one texel a
 //!   column shadows end up to half a texel beside their place, and a church's error does not fall below 0.022 however fine
 //!   the slices are (0.0024 with both). A cube map is resampled on the fly to two charts of 90 degrees a slice, half a
 //!   column a texel.

@@ -20,7 +20,7 @@ use crate::{
         },
         voxels::grid as voxels,
     },
-    shader::block,
+    shader::{block, constant},
     techniques::method::LightRequest,
 };
 
@@ -39,9 +39,10 @@ block! {
 
 impl ParamsUniform {
     fn new(params: &Params, size: [u32; 2]) -> Self {
+        let window = constant("IVSV_WINDOW");
         let (pitch, turns, taps, spread) = match params.gather {
             Gather::Full => (1, 1, 1, 1),
-            Gather::Interleaved => (1, 9, 9, 3),
+            Gather::Interleaved => (1, window * window, window * window, window),
             Gather::Quarter => (2, 1, 4, 1),
         };
         Self {

@@ -20,7 +20,7 @@
 //! L = I / h integral V exp(-sigma_t (s + d)) sigma_s rho(-sin xi) cos(emitter) d xi,   s = t_p + h tan xi
 //! ```
 //!
-//! Columns are steps of equal angle, so that 1 / d^2 is in the measure. What is left under the integral is smooth, and is
+//! Columns are steps of equal angle, so that 1 / d^2 is in the measure. The rest under the integral is smooth, and is
 //! taken in the middle of eight panels a row, times the share of lit voxels in each. Visibility is interpolated between the two
 //! nearest slices; along the columns a ray's ends cut voxels, which count in part.
 //!
@@ -68,7 +68,7 @@
 //!
 //! - `resolution`: slices, view rays and light rays of each grid. The maps' texels a side are the caller's, `shadow_map` of
 //!   a shot.
-//! - `points`: of the cloud, for each map; 0 takes as many as a map has texels. With many more, every texel that a border
+//! - `points`: the cloud's that each map takes; 0 takes as many as a map has texels. With many more, every texel that a border
 //!   passes is taken for blocked; with fewer, each stands for a disc of several texels, and what is thin grows fat. Of 128^2
 //!   texels, 8192, 16384 and 65536 points are 0.0147, 0.0152 and 0.0162 wrong of the donuts, 0.038, 0.027 and 0.033 of the
 //!   tubes.
@@ -77,18 +77,18 @@
 //! # Cost
 //!
 //! `results/wyman-dai.txt` has the paper's tables on a software driver, 320 x 240 pixels. With 256 samples the naive form runs
-//! 1282 passes where this runs 7. What that saves is the overhead of the others, which on the paper's device was 15 to 25 times
+//! 1282 passes where this runs 7. That saves the overhead of the others, which on the paper's device was 15 to 25 times
 //! the work of a coarse sample in them (0.23 ms a pass against 0.014 ms of voxels), and on the software driver, which starts a
 //! dispatch by calling it, 0.4 to 0.8 ms against 0.1 to 0.2 ms of work on two cores. So the paper's ratios of table 1 (18.6,
 //! 16.6, 25.8, 2.0 for maps, voxels, scan and gather, 5.6 for a frame) come out as 3.1, 3.1, 9.6, 1.7 and 2.0: the table beside
 //! says for each stage what a pass costs besides its work, and what it would have to. At the paper's overheads (0.25, 0.23 and
-//! 0.45 ms) and 30 times as fast at the work, the same counts give 36, 39 and 140. What saves work rather than passes saves as
+//! 0.45 ms) and 30 times as fast at the work, the same counts give 36, 39 and 140. Saving work rather than passes saves as
 //! much as in the paper: interleaved gathering 7.9 times (6.3 there), a frame with it 7 to 9 times over the naive form (20
 //! there, where the naive form's overhead counts).
 //!
 //! A thread of the gather takes two pixels, so that what it reads of a sample serves both; gathered interleaved, a
 //! workgroup's pixels lie three apart, so that all of them take the same samples and read neighbouring rows of the same
-//! grids. Where words of voxels are many, a thread scans one by itself and reads it once.
+//! grids. With many words of voxels, a thread scans one by itself and reads it once.
 //!
 //! 256 grids of 128^3 voxels are 64 MiB, four times one grid of 512^3, and their light rays sixteen times as many. A frame,
 //! gathered interleaved, takes 3.4 times one of a lamp with `vsv` at 512^3.
@@ -99,7 +99,7 @@
 //! half their radius: occluders grew fat, 0.022 at 16384 points. Pull-push by workgroups of 16 x 16 with barriers: three
 //! times as slow as a block of 4 x 4 a thread. Four panels with the density's slope in each: a tenth less time to gather,
 //! error 0.018, and 0.016 with a guess of its curvature. Voxels that a ray's ends cut counted entirely: a twentieth less,
-//! 0.016. Of no use on the software driver: directions of panels by rotation in place of cosine and sine, a loop over words
+//! 0.016. Useless on the software driver: directions of panels by rotation in place of cosine and sine, a loop over words
 //! around that over panels, stores only of words that a scan changes.
 //!
 //! # Where it fails

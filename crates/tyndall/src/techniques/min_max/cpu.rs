@@ -142,8 +142,8 @@ impl Forest {
         })
     }
 
-    /// Appends the stretches of a view ray that are in shadow. What leaves cannot tell is walked, and so is what comes
-    /// before the first leaf that lies wholly within the span, and after the last.
+    /// Appends the stretches of a view ray that are in shadow. Leaves that cannot tell are walked, and so are the
+    /// parts before the first leaf that lies entirely within the span, and after the last.
     fn traverse(
         &self,
         ray: &GridRay,

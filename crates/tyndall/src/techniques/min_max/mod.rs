@@ -15,8 +15,9 @@
 //!
 //! # Integrators
 //!
-//! - `analytic` integrates each lit stretch in closed form (what section 4.3 suggests for untextured lights): exponentials of the sun, airlight
-//!   tables of a lamp (Sun et al. 2005). Where a cone fades, or a texture lies on the light, by quadrature.
+//! - `analytic` integrates each lit stretch in closed form (as section 4.3 suggests for untextured lights):
+//!   exponentials of the sun, airlight tables of a lamp (Sun et al. 2005). Cones that fade and textured lights go by
+//!   quadrature.
 //! - `svd` takes the integrand without visibility for a sum of few products of a function of the view ray and one of
 //!   the light ray (section 3.2, eq. 5 and 6), which a singular value decomposition finds, per colour channel:
 //!

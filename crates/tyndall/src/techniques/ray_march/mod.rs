@@ -14,8 +14,8 @@
 //! one that is made of the light's point cloud, see `passes/imperfect/`. On the GPU only.
 //!
 //! Cost: N shadow-map texels a ray, fetched in the order of the ray, no memory besides the output. It does every
-//! light and medium, textures and coloured glass (which rectangular lights do not see). Of a rectangular light, N texels a
-//! sample and ray: 256 samples of 64 steps are as much work as 16384 steps of a lamp.
+//! light and medium, textures and coloured glass (which rectangular lights do not see). A rectangular light takes N texels
+//! a sample and ray: 256 samples of 64 steps are as much work as 16384 steps of a lamp.
 //!
 //! Limits: shadows thinner than a step are hit or missed by chance, which shows as bands. Doubling N halves them.
 //! Mesa's lavapipe ends a shader's loops after 65535 turns of all of them together and says nothing: there a local light

@@ -4,7 +4,7 @@
 //! rays by light rays. A voxel is a bit, dark where the light does not reach, and all bits of a view ray lie in one
 //! row of words. So visibility takes three steps that cost the same whatever the scene: **voxelize** the shadow map (the
 //! end of each light ray sets one voxel, in the row of the view ray that sees it), **scan** (the OR along each light ray,
-//! away from the light: what is behind its end is dark), and **gather** (a pixel reads its row).
+//! away from the light: all behind its end is dark), and **gather** (a pixel reads its row).
 //!
 //! # What is integrated
 //!
