@@ -287,6 +287,12 @@ impl<P: Pipeline> Program<P> {
         self
     }
 
+    /// The program with more overrides.
+    pub(crate) fn with_all(mut self, constants: &[(&'static str, f64)]) -> Self {
+        self.recipe.constants.extend(constants);
+        self
+    }
+
     /// Says that the shader does not read the light: one pipeline serves all.
     pub(crate) fn for_all_lights(mut self) -> Self {
         self.recipe.reads_light = false;

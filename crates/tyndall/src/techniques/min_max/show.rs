@@ -1,6 +1,6 @@
 //! The debug views, in place of the light.
 
-use super::{buffers::Buffers, params::Show};
+use super::{buffers::Buffers, params::Show, svd::OVERRIDES};
 use crate::{
     gpu::{
         pass::Pass,
@@ -15,7 +15,7 @@ pub(super) struct ShowSearch(ScreenProgram);
 impl ShowSearch {
     pub(super) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let module = "techniques::min_max::show";
-        Self(ScreenProgram::new(device, shared, module, "min_max_show"))
+        Self(ScreenProgram::new(device, shared, module, "min_max_show").with_all(&OVERRIDES))
     }
 
     pub(super) fn pass(&self, scope: &mut LightScope<'_>, buffers: &Buffers, show: Show) -> Pass {

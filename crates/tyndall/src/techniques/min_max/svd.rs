@@ -35,11 +35,16 @@ block! {
         pub(crate) gamma_start: f32,
         pub(crate) gamma_step: f32,
         pub(crate) rank: u32,
-        pub(crate) samples: u32,
-        pub(crate) least_sine: f32,
-        pad: u32,
+        pad: [u32; 3],
     }
 }
+
+/// The overrides of `svd.wesl`.
+#[cfg(feature = "gpu")]
+pub(super) const OVERRIDES: [(&str, f64); 2] = [
+    ("SVD_SAMPLES", GRID as f64),
+    ("SVD_LEAST_SINE", SVD_LEAST_SINE),
+];
 
 #[cfg(feature = "gpu")]
 impl SvdUniform {
@@ -51,9 +56,7 @@ impl SvdUniform {
             gamma_start,
             gamma_step,
             rank,
-            samples: GRID as u32,
-            least_sine: SVD_LEAST_SINE as f32,
-            pad: 0,
+            pad: [0; 3],
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The sums of the light's texture over every slice.
 
-use super::{buffers::Buffers, params::Integrator};
+use super::{buffers::Buffers, params::Integrator, svd::OVERRIDES};
 use crate::gpu::{
     pass::Pass,
     program::ComputeProgram,
@@ -16,7 +16,9 @@ impl TintRows {
     pub(super) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let program = |svd| {
             let module = "techniques::min_max::tint_rows";
-            ComputeProgram::new(device, shared, module, "tint_rows").with("SVD", svd)
+            ComputeProgram::new(device, shared, module, "tint_rows")
+                .with("SVD", svd)
+                .with_all(&OVERRIDES)
         };
         Self {
             analytic: program(0.0),

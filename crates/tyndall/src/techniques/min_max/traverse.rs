@@ -1,6 +1,6 @@
 //! The light of every pixel: its ray through its slice's tree.
 
-use super::{buffers::Buffers, params::Integrator};
+use super::{buffers::Buffers, params::Integrator, svd::OVERRIDES};
 use crate::gpu::{
     pass::Pass,
     program::ScreenProgram,
@@ -16,7 +16,9 @@ impl Traverse {
     pub(super) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         let program = |svd| {
             let module = "techniques::min_max::traverse";
-            ScreenProgram::new(device, shared, module, "traverse").with("SVD", svd)
+            ScreenProgram::new(device, shared, module, "traverse")
+                .with("SVD", svd)
+                .with_all(&OVERRIDES)
         };
         Self {
             analytic: program(0.0),
