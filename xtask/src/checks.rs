@@ -36,6 +36,27 @@ pub(crate) fn doc() -> anyhow::Result<()> {
     )
 }
 
+/// Packs the crates that are published as they would be uploaded: fails where one needs what is not published, or its manifest
+/// lacks something. It builds nothing, because all of it was built by the other checks.
+pub(crate) fn package() -> anyhow::Result<()> {
+    package_of(&[])
+}
+
+/// Packs the workspace, or the one that the arguments name.
+fn package_of(arguments: &[&str]) -> anyhow::Result<()> {
+    let crates = [
+        "--workspace",
+        "--exclude=tyndall-testkit",
+        "--exclude=xtask",
+    ];
+    // A change is checked before it is committed.
+    let flags = ["--no-verify", "--allow-dirty", "--offline", "--quiet"];
+    cargo(
+        &[&["package"], &crates[..], &flags, arguments].concat(),
+        &[],
+    )
+}
+
 pub(crate) fn unit() -> anyhow::Result<()> {
     cargo(&["test", "--release", "--workspace"], &[NO_DEVICE_SELECT])
 }
@@ -80,4 +101,37 @@ fn ensure_component(subcommand: &str, component: &str) -> anyhow::Result<()> {
         return Ok(());
     }
     bail!("`cargo {subcommand}` is missing, and rustup cannot add it: install {component}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// Packs a crate whose manifest ends so, beside an empty one that is not published.
+    fn package_with(end: &str) -> anyhow::Result<()> {
+        let folder = tempfile::tempdir().unwrap();
+        let head = "[workspace]\nmembers = [\"xtask\"]\n";
+        write_crate(folder.path(), "a", &format!("{head}{end}"));
+        write_crate(&folder.path().join("xtask"), "xtask", "publish = false\n");
+        let target = folder.path().join("target");
+        let paths = [folder.path().join("Cargo.toml"), target].map(|p| p.display().to_string());
+        package_of(&["--manifest-path", &paths[0], "--target-dir", &paths[1]])
+    }
+
+    fn write_crate(folder: &Path, name: &str, end: &str) {
+        std::fs::create_dir_all(folder.join("src")).unwrap();
+        std::fs::write(folder.join("src/lib.rs"), "").unwrap();
+        let package =
+            format!("[package]\nname = \"{name}\"\nversion = \"0.0.0\"\nedition = \"2024\"\n{end}");
+        std::fs::write(folder.join("Cargo.toml"), package).unwrap();
+    }
+
+    #[test]
+    fn a_package_that_needs_what_is_not_published_fails() {
+        package_with("[dev-dependencies]\nxtask = { path = \"xtask\" }\n").unwrap();
+        let needs = "[dependencies]\nxtask = { path = \"xtask\" }\n";
+        let message = package_with(needs).expect_err("it passed").to_string();
+        assert!(message.contains("cargo package"), "{message}");
+    }
 }

@@ -3,6 +3,7 @@
 mod checks;
 mod command;
 mod driver;
+mod layers;
 mod results;
 mod tidy;
 
@@ -24,6 +25,11 @@ const CHECKS: &[Check] = &[
         run: tidy::check,
     },
     Check {
+        name: "layers",
+        about: "imports: none against the order in ARCHITECTURE.md, none in a circle",
+        run: layers::check,
+    },
+    Check {
         name: "fmt",
         about: "formatting",
         run: checks::fmt,
@@ -37,6 +43,11 @@ const CHECKS: &[Check] = &[
         name: "doc",
         about: "documentation and its links",
         run: checks::doc,
+    },
+    Check {
+        name: "package",
+        about: "packages of the published crates",
+        run: checks::package,
     },
     Check {
         name: "driver",

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, builder::PossibleValuesParser};
 use tyndall::techniques::Technique;
 
 use crate::{
+    backend::BackendChoice,
     bench::suite_names,
     layer::Layer,
     shot::{FrameRange, Override, technique_names},
@@ -16,7 +17,7 @@ use crate::{
 #[derive(Clone, Debug, Parser)]
 #[command(name = "tyndall", version, after_help = EXAMPLES)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -42,7 +43,7 @@ pub enum Command {
     Bench(BenchArgs),
     /// Open a shot or a scene in a window
     View(ViewArgs),
-    /// List adapters, limits and techniques, or what a scene holds
+    /// List adapters, limits and techniques, or what a scene or a shot holds
     Info(InfoArgs),
 }
 
@@ -56,16 +57,17 @@ pub struct RenderArgs {
     /// The picture: .png is tone-mapped, .exr is linear; left out: the input's name with .png, in this folder
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// The technique; takes the place of the shot's, and of its parameters where it is another one
+    /// The technique of all lights without one of their own; takes the place of the shot's, and of its parameters where it is
+    /// another one
     #[arg(long, value_name = "T", value_parser = PossibleValuesParser::new(technique_names()))]
     pub technique: Option<String>,
     /// Override a key of the shot by its dotted path; the value is TOML or a bare word
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<Override>,
-    /// Where to render
+    /// Backend that renders
     #[arg(long, value_name = "B", default_value = "auto")]
     pub backend: BackendChoice,
-    /// What the picture holds; several go into one .exr as named layers
+    /// Content of the picture; several layers go into one .exr by their names
     #[arg(long = "layer", value_name = "L", default_value = "final")]
     pub layers: Vec<Layer>,
     /// Exposure of a .png [EV]: light is multiplied by 2^EV; left out: chosen by the picture's brightness
@@ -104,7 +106,7 @@ pub struct CompareArgs {
     /// The techniques; left out: all that can do the shot's lights
     #[arg(long, value_name = "A,B,..", value_delimiter = ',', value_parser = PossibleValuesParser::new(compared_names()))]
     pub techniques: Vec<String>,
-    /// Where the reference takes its visibility from
+    /// Source of the reference's visibility
     #[arg(long, value_name = "V", default_value = "traced")]
     pub reference: ReferenceChoice,
     /// Folder of the report, made where it is missing; left out: the shot's name with -compare, in this folder
@@ -116,7 +118,7 @@ pub struct CompareArgs {
     /// Override a key of the shot by its dotted path; the value is TOML or a bare word
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<Override>,
-    /// Where techniques run that can run on both; the reference runs on the CPU
+    /// Backend of techniques that run on both; the reference runs on the CPU
     #[arg(long, value_name = "B", default_value = "auto")]
     pub backend: BackendChoice,
 }
@@ -132,11 +134,13 @@ in turn. report.html opens from disk and needs no network; pictures lie beside i
 /// Techniques that can be compared with the reference: all others.
 fn compared_names() -> Vec<&'static str> {
     let mut names = technique_names();
-    names.retain(|name| !matches!(Technique::from_name(name), Some(Technique::Reference(_))));
+    names.retain(|name| {
+        Technique::from_name(name).is_some_and(|technique| !technique.info().is_reference)
+    });
     names
 }
 
-/// Where the reference takes its visibility from.
+/// Source of the reference's visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ReferenceChoice {
     /// The scene's triangles
@@ -177,19 +181,9 @@ pub struct ViewArgs {
 /// Arguments of `tyndall info`.
 #[derive(Clone, Debug, Args)]
 pub struct InfoArgs {
-    /// A scene (.gltf, .glb or builtin:NAME); left out: the machine and the techniques
-    pub scene: Option<PathBuf>,
-}
-
-/// Where to render.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum BackendChoice {
-    /// The GPU where there is an adapter and the technique runs there, else the CPU
-    Auto,
-    /// The GPU, or fail
-    Gpu,
-    /// The CPU, with nothing installed
-    Cpu,
+    /// A shot (.toml) or a scene (.gltf, .glb or builtin:NAME); left out: the machine and the techniques
+    #[arg(value_name = "SHOT|SCENE")]
+    pub input: Option<PathBuf>,
 }
 
 fn exposure(text: &str) -> Result<f32, String> {

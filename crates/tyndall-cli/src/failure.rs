@@ -1,4 +1,4 @@
-//! How the command ends when it doesn't succeed: one message, and an exit code that scripts can tell apart.
+//! Failures of the command: one message, and an exit code that scripts can tell apart.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What a picture can hold besides the final image.
+//! Layers: contents of a picture besides the final image.
 
 use clap::ValueEnum;
 

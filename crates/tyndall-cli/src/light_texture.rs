@@ -1,4 +1,4 @@
-//! The pictures that lights shine through.
+//! The textures that lights shine through.
 
 use std::{
     ffi::OsStr,
@@ -15,7 +15,7 @@ use crate::{output::Pattern, shot::FrameRange};
 /// The most texels a side.
 const MAX_SIDE: usize = 8192;
 
-/// Why a picture could not be read.
+/// Why a texture could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum TextureError {
     /// It is missing, broken or of a kind we don't read.
@@ -34,15 +34,15 @@ pub enum TextureError {
         /// Its size [texels].
         size: [usize; 2],
     },
-    /// It is to be another picture in each frame, and there is none.
+    /// It is to be another texture in each frame, and there is none.
     #[error("cannot read {}: expected pictures of frames, such as {}, found none", file.display(), first.display())]
     NoFrames {
         /// The files' pattern.
         file: PathBuf,
-        /// The picture of frame 0.
+        /// The texture of frame 0.
         first: PathBuf,
     },
-    /// It is to be another picture in each frame, and one is missing.
+    /// It is to be another texture in each frame, and one is missing.
     #[error("cannot read {}: expected a picture of each of the frames {frames}, {} is missing", file.display(), missing.display())]
     MissingFrame {
         /// The files' pattern.
@@ -59,26 +59,26 @@ pub enum TextureError {
         file: PathBuf,
         /// The first such value.
         value: f32,
-        /// Where it is.
+        /// Its column and row.
         texel: [usize; 2],
     },
 }
 
-/// The pictures of a light: one for good, or one a frame.
+/// The textures of a light: one for good, or one a frame.
 #[derive(Debug)]
-pub(crate) enum Pictures {
-    /// The same in all frames.
+pub(crate) enum Textures {
+    /// One for all frames.
     Still(Arc<LightTexture>),
     /// A file a frame, over and over again.
     Frames(Pattern, FrameRange),
 }
 
-impl Pictures {
-    /// Reads a picture. Where its name has a place for a frame's number (`####` or `%04d`) and no file is called so to the
+impl Textures {
+    /// Reads a texture. Where its name has a place for a frame's number (`####` or `%04d`) and no file is called so to the
     /// letter, finds which frames there are.
     ///
     /// # Errors
-    /// As for [`load`], and where there is no picture of any frame or a frame is missing among the others.
+    /// As for [`load`], and where there is no texture of any frame or a frame is missing among the others.
     pub(crate) fn open(file: &Path) -> Result<Self, TextureError> {
         match Pattern::of(file) {
             Ok(pattern) if !file.exists() => {
@@ -89,13 +89,13 @@ impl Pictures {
         }
     }
 
-    /// The picture of a frame. Before the first one that there is and after the last they start over.
+    /// The texture of a frame. Before the first one that there is and after the last they start over.
     ///
     /// # Errors
     /// As for [`load`].
     pub(crate) fn at(&self, frame: u32) -> Result<Arc<LightTexture>, TextureError> {
         match self {
-            Self::Still(picture) => Ok(Arc::clone(picture)),
+            Self::Still(texture) => Ok(Arc::clone(texture)),
             Self::Frames(pattern, FrameRange { first, last }) => {
                 let count = i64::from(*last) - i64::from(*first) + 1;
                 let from_first = (i64::from(frame) - i64::from(*first)).rem_euclid(count);
@@ -105,7 +105,7 @@ impl Pictures {
     }
 }
 
-/// The frames whose pictures are there, all of them.
+/// The frames whose textures are there, all of them.
 fn frames(file: &Path, pattern: &Pattern) -> Result<FrameRange, TextureError> {
     let mut numbers = pattern
         .numbers()
@@ -267,23 +267,23 @@ mod tests {
         for n in 3..6 {
             write(&format!("v.{n:03}.exr"), n as f32);
         }
-        // None of these is of the sequence.
+        // None of these belongs to the frames.
         write("v.0004.exr", 1.0);
         write("w.009.exr", 1.0);
         for name in ["v.###.exr", "v.%03d.exr"] {
-            let pictures = Pictures::open(&file(name)).unwrap();
+            let pictures = Textures::open(&file(name)).unwrap();
             let found = [0, 1, 3, 4, 5, 6, 12].map(|n| pictures.at(n).unwrap().texels[0][0]);
             assert_eq!(found, [3.0, 4.0, 3.0, 4.0, 5.0, 3.0, 3.0], "{name}");
         }
         write("v.008.exr", 8.0);
-        let message = Pictures::open(&file("v.###.exr")).unwrap_err().to_string();
+        let message = Textures::open(&file("v.###.exr")).unwrap_err().to_string();
         assert!(message.contains("each of the frames 3..8"), "{message}");
         assert!(message.ends_with("v.006.exr is missing"), "{message}");
-        let message = Pictures::open(&file("u.##.exr")).unwrap_err().to_string();
+        let message = Textures::open(&file("u.##.exr")).unwrap_err().to_string();
         assert!(message.ends_with("u.00.exr, found none"), "{message}");
-        // A file that is called so to the letter is one picture.
+        // A file that is called so to the letter is one texture.
         write("a#b.exr", 7.0);
-        let still = Pictures::open(&file("a#b.exr")).unwrap();
+        let still = Textures::open(&file("a#b.exr")).unwrap();
         assert_eq!(still.at(5).unwrap().texels[0][0], 7.0);
     }
 
@@ -308,7 +308,7 @@ mod tests {
             let whole = std::fs::read(&file).unwrap();
             for length in 0..whole.len() {
                 std::fs::write(&file, &whole[..length]).unwrap();
-                // A PNG without its last, empty chunk is still a whole picture.
+                // A PNG without its last, empty chunk is still complete.
                 let whole_picture = name == "a.png" && length + 12 >= whole.len();
                 assert!(load(&file).is_err() || whole_picture, "{name}: {length}");
             }

@@ -1,4 +1,4 @@
-//! What people see while they wait: bars on a terminal, a line a stage otherwise.
+//! Progress, shown while people wait: bars on a terminal, a line a stage otherwise.
 
 use std::time::{Duration, Instant};
 
@@ -6,12 +6,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Milliseconds that stages of work took, in order.
 #[derive(Clone, Debug, Default)]
-pub struct Stages {
+pub struct Progress {
     times: Vec<(String, f64)>,
     is_quiet: bool,
 }
 
-impl Stages {
+impl Progress {
     /// Says nothing: for work inside a stage.
     pub fn quiet() -> Self {
         Self {

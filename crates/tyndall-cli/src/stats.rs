@@ -1,24 +1,21 @@
-//! What `--stats` writes: what was rendered, where, how, and what each part of it took.
+//! The report of `--stats`: adapter, technique and layers of a render, and the cost of each part of it.
 
 use serde_json::{Map, Value, json};
 use tyndall::techniques::{self, Technique};
 
-use crate::{
-    layer::Layer,
-    render::{AdapterDescription, Rendered},
-};
+use crate::{backend::AdapterDescription, layer::Layer, render::Rendered};
 
 /// A render and its costs.
 pub struct Stats<'a> {
     /// The adapter; `None` on the CPU.
     pub adapter: Option<&'a AdapterDescription>,
-    /// The technique.
-    pub technique: &'a Technique,
+    /// The technique of all lights that name none; `None` where the shot leaves it to the lights' kinds.
+    pub technique: Option<&'a Technique>,
     /// Width and height [pixels].
     pub size: [u32; 2],
-    /// What was asked for.
+    /// Layers that were asked for.
     pub layers: &'a [Layer],
-    /// What was rendered; of a sequence the last frame.
+    /// The rendered layers; of a sequence those of the last frame.
     pub rendered: &'a Rendered,
     /// The frames of a sequence, in order; empty of a single picture.
     pub frames: &'a [FrameStats],
@@ -36,7 +33,7 @@ pub struct FrameStats {
     pub frame: u32,
     /// GPU passes and their milliseconds, in order.
     pub passes: Vec<(String, f64)>,
-    /// What the technique counts.
+    /// Counts of the technique.
     pub counts: Vec<(String, u64)>,
 }
 
@@ -61,6 +58,13 @@ impl Stats<'_> {
     }
 
     fn of_picture(&self) -> Value {
+        let lights = &self.rendered.techniques;
+        let technique = self.technique.or(lights.first()).cloned();
+        let technique = technique.unwrap_or_default();
+        let light = |technique: &Technique| {
+            let name = technique.info().name;
+            json!({ "technique": name, "parameters": parameters(technique) })
+        };
         json!({
             "tyndall": env!("CARGO_PKG_VERSION"),
             "command": self.command,
@@ -70,8 +74,9 @@ impl Stats<'_> {
                 "driver": adapter.driver,
                 "backend": adapter.api,
             })),
-            "technique": self.technique.info().name,
-            "parameters": parameters(self.technique),
+            "technique": technique.info().name,
+            "parameters": parameters(&technique),
+            "lights": lights.iter().map(light).collect::<Vec<_>>(),
             "size": self.size,
             "layers": self.layers.iter().map(|layer| layer.name()).collect::<Vec<_>>(),
             "passes": times(&self.rendered.passes),

@@ -14,7 +14,7 @@ use tyndall::{
 };
 use wgpu::util::{DeviceExt, DownloadBuffer, TextureDataOrder};
 
-/// Width and height of the picture [pixels]; a row of 16-byte pixels is a multiple of 256 bytes, as copies want it.
+/// Width and height of the image [pixels]; a row of 16-byte pixels is a multiple of 256 bytes, as copies want it.
 const SIZE: [u32; 2] = [96, 32];
 /// Side of the shadow map [texels].
 const MAP: u32 = 64;
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     };
 
-    // What a renderer would have drawn. Depth is reversed: 0 is the far plane, 1 the near one.
+    // Depth as a renderer would have drawn it. It is reversed: 0 is the far plane, 1 the near one.
     let depth = depth_texture(&device, &queue, SIZE, |_, _| 0.0);
     let slits = depth_texture(&device, &queue, [MAP; 2], |x, _| (x / 8 % 2) as f32);
     let (depth, shadow_map) = (view_of(&depth, false), view_of(&slits, true));

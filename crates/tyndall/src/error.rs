@@ -1,6 +1,6 @@
-//! What can go wrong, with what was expected and what was found.
+//! The errors of preparing a frame, with what was expected and what was found.
 
-/// Why a frame cannot be rendered as it was given.
+/// A frame cannot be rendered as it was given.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PrepareError {
@@ -9,9 +9,9 @@ pub enum PrepareError {
     OutOfRange {
         /// The field, e.g. `lights[0].emitter.outer`.
         field: String,
-        /// What it may be.
+        /// The values that it may have.
         expected: &'static str,
-        /// What was given.
+        /// The value given.
         found: String,
     },
     /// An input that the frame needs was not given.
@@ -37,13 +37,13 @@ pub enum PrepareError {
     Unsupported {
         /// The technique.
         technique: &'static str,
-        /// What it cannot do.
+        /// The thing it cannot do.
         what: String,
     },
     /// The frame needs more than the device has.
     #[error("{what}: {needed} bytes are more than the device's {name}, {limit}")]
     Limit {
-        /// What needs them.
+        /// The data that needs them.
         what: String,
         /// Bytes it needs.
         needed: u64,

@@ -1,11 +1,14 @@
-//! What one picture is made of, as plain data: the same [`Frame`] drives the GPU and the CPU.
+//! A frame as plain data: the same [`Frame`] drives the GPU and the CPU.
 //!
 //! World space is right-handed; lengths are metres, angles radians, colours linear RGB.
+
+pub use crate::phase::Phase;
+use crate::phase::droplets::droplets;
 
 /// One view of one moment: everything a technique needs besides textures (depth, shadow maps).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Where the picture is taken from.
+    /// The camera that sees it.
     pub camera: Camera,
     /// The lights, in the order of the inputs that belong to them. Their in-scattered light adds up.
     pub lights: Vec<Light>,
@@ -20,15 +23,15 @@ pub struct Camera {
     pub eye: [f32; 3],
     /// World-space viewing direction; need not be of unit length, must not be zero.
     pub forward: [f32; 3],
-    /// World-space direction that is up in the picture; need not be normal to `forward`, must not be parallel to it.
+    /// World-space direction that is up in the image; need not be normal to `forward`, must not be parallel to it.
     pub up: [f32; 3],
     /// The projection.
     pub projection: Projection,
-    /// What the depth buffer holds.
+    /// The convention of the depth buffer.
     pub depth_range: DepthRange,
 }
 
-/// How a depth buffer stores view depth.
+/// The convention by which a depth buffer stores view depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthRange {
     /// 0 at the near plane, 1 at the far plane.
@@ -46,15 +49,15 @@ impl DepthRange {
         self != Self::Standard
     }
 
-    /// What the depth buffer holds where nothing was drawn.
+    /// The depth buffer's value where nothing was drawn.
     pub fn far_value(self) -> f32 {
         if self.is_reversed() { 0.0 } else { 1.0 }
     }
 }
 
-/// How view space becomes the picture. Depth runs along the viewing direction.
+/// The projection of view space onto the image. Depth runs along the viewing direction.
 ///
-/// A point of the picture at normalised device coordinates (x, y) in [-1, 1], y up, lies at
+/// A point of the image at normalised device coordinates (x, y) in [-1, 1], y up, lies at
 /// `center + half_extent * (x, y)` on the plane at view depth 1 (perspective) or at any depth (orthographic).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
@@ -62,7 +65,7 @@ pub enum Projection {
     Perspective {
         /// Tangents of half the horizontal and vertical field of view (> 0).
         half_extent: [f32; 2],
-        /// Tangents of the picture's centre off the viewing direction; zero but for jitter and stereo.
+        /// Tangents of the image's centre off the viewing direction; zero but for jitter and stereo.
         center: [f32; 2],
         /// View depth of the near plane [m] (> 0).
         near: f32,
@@ -71,9 +74,9 @@ pub enum Projection {
     },
     /// All rays are parallel to the viewing direction and start at view depth 0.
     Orthographic {
-        /// Half the picture's width and height [m] (> 0).
+        /// Half the image's width and height [m] (> 0).
         half_extent: [f32; 2],
-        /// The picture's centre off the viewing axis [m].
+        /// The image's centre off the viewing axis [m].
         center: [f32; 2],
         /// View depth of the near plane [m].
         near: f32,
@@ -110,23 +113,23 @@ impl Camera {
     }
 }
 
-/// A light, the map that holds its shadows, and the picture it shines through.
+/// A light, the map that holds its shadows, and the texture it shines through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// What shines.
+    /// The emitter and its strength.
     pub emitter: Emitter,
-    /// How the light's shadow map was made; `None`: nothing blocks this light, unless visibility is traced.
+    /// The projection of the light's shadow map; `None`: nothing blocks this light, unless visibility is traced.
     pub shadow: Option<ShadowProjection>,
-    /// Where the light's texture lies; `None`: white light.
+    /// The placement of the light's texture; `None`: white light.
     pub texture: Option<TexturePlacement>,
 }
 
-/// What shines, and how strongly.
+/// An emitter and its strength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Emitter {
     /// The sun: parallel light that reaches every unblocked point with its full illuminance (Chen 2011, section 3.1).
     Directional {
-        /// The way the light travels; need not be of unit length.
+        /// The direction in which the light travels; need not be of unit length.
         direction: [f32; 3],
         /// Irradiance on a surface that faces the light [W/m^2].
         illuminance: [f32; 3],
@@ -142,7 +145,7 @@ pub enum Emitter {
     Spot {
         /// World-space position [m].
         position: [f32; 3],
-        /// The cone's axis, the way the light travels; need not be of unit length.
+        /// The cone's axis, the direction in which the light travels; need not be of unit length.
         direction: [f32; 3],
         /// Radiant intensity on the axis [W/sr].
         intensity: [f32; 3],
@@ -155,13 +158,13 @@ pub enum Emitter {
     Rect {
         /// World-space middle of the rectangle [m].
         center: [f32; 3],
-        /// World-space edge from the picture's left to its right [m].
+        /// World-space edge from the texture's left to its right [m].
         edge_x: [f32; 3],
-        /// World-space edge from the picture's top to its bottom [m].
+        /// World-space edge from the texture's top to its bottom [m].
         edge_y: [f32; 3],
         /// Radiance of the bright side [W/(m^2 sr)].
         radiance: [f32; 3],
-        /// Number of point samples it is taken as (1 ..= 1024).
+        /// Number of point samples that stand for it (1 ..= 1024).
         samples: u32,
     },
 }
@@ -216,7 +219,7 @@ impl Light {
     }
 }
 
-/// How a shadow map was rendered. Depth is what a depth buffer holds: clip z / clip w in [0, 1].
+/// The projection that a shadow map was rendered with. Its depth is a depth buffer's: clip z / clip w in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShadowProjection {
     /// One square or oblong map: a directional light's orthographic or a spot's perspective one.
@@ -238,39 +241,39 @@ pub enum ShadowProjection {
     },
 }
 
-/// Where a light's texture lies. The picture is bilinear between texel centres and black outside.
+/// The placement of a light's texture, which is bilinear between texel centres and black outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TexturePlacement {
-    /// Directional light: the picture fills this parallelogram, projected along the light.
+    /// Directional light: the texture fills this parallelogram, projected along the light.
     Parallelogram {
         /// World-space middle [m].
         center: [f32; 3],
-        /// World-space edge from the picture's left to its right [m].
+        /// World-space edge from the texture's left to its right [m].
         edge_x: [f32; 3],
-        /// World-space edge from the picture's top to its bottom [m].
+        /// World-space edge from the texture's top to its bottom [m].
         edge_y: [f32; 3],
     },
-    /// Spot light: the picture fills the square round the cone, tan(outer) to each side of the axis.
+    /// Spot light: the texture fills the square round the cone, tan(outer) to each side of the axis.
     Cone {
-        /// World-space direction that is up in the picture; must not be parallel to the axis.
+        /// World-space direction that is up in the texture; must not be parallel to the axis.
         up: [f32; 3],
     },
-    /// Point light: the picture is wrapped round the sphere of directions, longitude from left to right
+    /// Point light: the texture is wrapped round the sphere of directions, longitude from left to right
     /// (seen from the light, eastward), latitude from top to bottom.
     Sphere {
-        /// World-space direction of the picture's upper edge.
+        /// World-space direction of the texture's upper edge.
         up: [f32; 3],
-        /// World-space direction of the picture's middle; must not be parallel to `up`.
+        /// World-space direction of the texture's middle; must not be parallel to `up`.
         forward: [f32; 3],
     },
-    /// Rectangular light: the picture fills the rectangle.
+    /// Rectangular light: the texture fills the rectangle.
     Rectangle,
 }
 
 /// A homogeneous medium, the sum of its components (air is Rayleigh + Mie).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
-    /// What the medium is mixed of; none is a vacuum. At most [`Medium::MAX_COMPONENTS`].
+    /// The components of the mixture; none is a vacuum. At most [`Medium::MAX_COMPONENTS`].
     pub components: Vec<MediumComponent>,
 }
 
@@ -286,20 +289,20 @@ pub struct MediumComponent {
     pub sigma_s: [f32; 3],
     /// Absorption coefficient per channel [1/m] (>= 0).
     pub sigma_a: [f32; 3],
-    /// How light is scattered.
+    /// The phase function.
     pub phase: Phase,
 }
 
-/// A phase function of cos(theta), the cosine between the way light travels and the way it is scattered [1/sr].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Phase {
-    /// 1 / 4 pi.
-    Isotropic,
-    /// Small particles: 3 / 16 pi (1 + cos^2).
-    Rayleigh,
-    /// Henyey & Greenstein 1941.
-    HenyeyGreenstein {
-        /// Mean cosine (-1 < g < 1); forward scattering where positive.
-        g: f32,
-    },
+impl MediumComponent {
+    /// Fog or cloud of water droplets of this diameter [um], 5 to 50: two components that share the coefficients [1/m], a wide
+    /// lobe and a narrow forward peak; see [`droplets`](crate::phase::droplets::droplets) (Jendersie & d'Eon 2023). `None`
+    /// where the diameter is out of range.
+    pub fn fog_droplets(sigma_s: [f32; 3], sigma_a: [f32; 3], diameter: f32) -> Option<[Self; 2]> {
+        let parts = droplets(diameter)?;
+        Some(parts.map(|(share, phase)| Self {
+            sigma_s: sigma_s.map(|x| (f64::from(x) * share) as f32),
+            sigma_a: sigma_a.map(|x| (f64::from(x) * share) as f32),
+            phase,
+        }))
+    }
 }

@@ -81,7 +81,7 @@
 //! - Visibility is as good as the shadow map; only the `reference` can trace the scene instead.
 //! - Light in-scattered behind coloured glass is not tinted by the glass on its way to the eye.
 //! - Rectangular lights are for `ivsv`, `ray-march` on the GPU and the `reference`.
-//! - No WebGL: planned techniques need compute shaders.
+//! - No WebGL: the passes need compute shaders.
 //!
 //! # Features
 //!
@@ -103,6 +103,7 @@ pub mod light;
 mod mesh;
 #[cfg(feature = "gpu")]
 mod passes;
+pub mod phase;
 pub mod physics;
 #[cfg(feature = "gpu")]
 pub mod shader;

@@ -34,7 +34,7 @@ const PLATE: Plate = Plate {
 };
 
 impl Plate {
-    /// Whether it lies between two points.
+    /// True if it lies between two points.
     fn is_between(&self, a: DVec3, b: DVec3) -> bool {
         let share = (self.height - a.y) / (b.y - a.y);
         let crossing = a.lerp(b, share);
@@ -233,7 +233,7 @@ fn error(a: &Picture, b: &Picture) -> f64 {
     compare(a, b).expect("same size").rel_mae
 }
 
-/// Where nothing blocks the light. What differs: the samples' places, Halton's points here and Hammersley's there; and the
+/// Nothing blocks the light. Differences: the samples' places, Halton's points here and Hammersley's there; and the
 /// panels of the one, the steps of the other.
 #[test]
 fn unshadowed_light_is_the_reference_s() {
@@ -334,7 +334,7 @@ fn batches_and_gathers_agree() {
     }
 }
 
-/// How much of the light reaches each pixel's point past the plate, if there is one; its surface faces `normal`.
+/// The share of the light that reaches each pixel's point past the plate, if there is one; its surface faces `normal`.
 fn exact_visibility(stage: &Stage, plate: Option<&Plate>, normal: Option<DVec3>) -> Vec<DVec3> {
     let camera = &stage.frame.camera;
     let rays = CameraRays::new(camera, SIZE);
@@ -386,7 +386,7 @@ fn normals(gpu: &TestDevice, normal: DVec3, [width, height]: [u32; 2]) -> wgpu::
         .create_view(&Default::default())
 }
 
-/// What `ivsv` says of the light's way to each pixel's point.
+/// The light's visibility from each pixel's point, by `ivsv`.
 fn visibility(
     gpu: &TestDevice,
     effect: &Effect,

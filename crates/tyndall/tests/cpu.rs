@@ -3,7 +3,8 @@
 mod common;
 
 use common::{
-    SIZE, crowd, epipole_stages, perspective_stages, seam_errors, stages, steps, svd, technique,
+    SIZE, crowd, epipole_stages, fog_stages, perspective_stages, seam_errors, stages, steps, svd,
+    technique,
 };
 use glam::{DVec3, Vec3};
 use tyndall::{
@@ -205,7 +206,7 @@ fn an_unshadowed_lamp_is_the_airlight_integral() {
 /// Marching converges to the walk through the same map: its limit, found without steps.
 #[test]
 fn marching_converges_to_the_reference() {
-    for stage in stages() {
+    for stage in stages().into_iter().chain(fog_stages()) {
         let truth = stage.on_cpu(reference());
         let error = |n: i64, spacing: &str| {
             let spacing = ("spacing", Value::Word(spacing.into()));
@@ -267,7 +268,7 @@ fn min_max_is_the_reference() {
         ("slices", Value::Integer(50)),
         ("samples", Value::Integer(64)),
     ];
-    for stage in stages() {
+    for stage in stages().into_iter().chain(fog_stages()) {
         let truth = stage.on_cpu(reference());
         for params in [&[][..], &coarse] {
             let found = stage.on_cpu(technique("min-max", params));
@@ -291,7 +292,7 @@ fn svd_agrees_with_the_closed_forms() {
             let found = stage.on_cpu(svd(rank));
             let error = compare(&found, &analytic).expect("same size").rel_mae;
             assert!(error < bound, "{}, {rank}: {error}", stage.name);
-            // Where the terms are exact what is left is the interpolation between samples of the factors.
+            // Where the terms are exact, there is left the interpolation between samples of the factors.
             let more_is_better = error <= fewer + 1e-4;
             assert!(more_is_better, "{}, {rank}: {error} {fewer}", stage.name);
             fewer = error;

@@ -5,7 +5,7 @@ mod common;
 
 use std::sync::OnceLock;
 
-use common::{SIZE, Stage, crowd, gpu as on, stages, steps, technique};
+use common::{SIZE, Stage, crowd, fog_stages, gpu as on, stages, steps, technique};
 use glam::{Quat, Vec3};
 use tyndall::{
     Effect,
@@ -44,7 +44,7 @@ fn some_stages() -> Vec<Stage> {
     some.chain([crowd()]).collect()
 }
 
-/// Every sample marched: what is left is the way from slices to pixels, in pictures whose depths are noise.
+/// Every sample marched: there is left the interpolation from slices to pixels, in images whose depths are noise.
 #[test]
 fn it_agrees_with_marching_for_every_light_and_camera() {
     let Some(gpu) = device_or_skip("epipolar sampling against marching") else {
@@ -52,7 +52,7 @@ fn it_agrees_with_marching_for_every_light_and_camera() {
     };
     let effect = effect(gpu);
     let ours = epipolar(&[whole("slices", 512), whole("initial_step", 1)]);
-    for stage in some_stages() {
+    for stage in some_stages().into_iter().chain(fog_stages()) {
         let found = on::on_gpu(gpu, effect, &stage, ours.clone());
         let marched = on::on_gpu(gpu, effect, &stage, technique("ray-march", &[steps(1024)]));
         let error = compare(&found, &marched).expect("same size");

@@ -3,8 +3,8 @@
 mod common;
 
 use common::{
-    SIZE, Stage, crowd, epipole_stages, gpu as on, noise, perspective_stages, seam_errors, stages,
-    steps, svd, technique,
+    SIZE, Stage, crowd, epipole_stages, fog_stages, gpu as on, noise, perspective_stages,
+    seam_errors, stages, steps, svd, technique,
 };
 use tyndall::{
     CreateError, FrameInputs,
@@ -24,7 +24,7 @@ fn marching_agrees_with_the_cpu() {
         return;
     };
     let effect = on::effect(gpu);
-    for stage in stages().into_iter().chain([crowd()]) {
+    for stage in stages().into_iter().chain(fog_stages()).chain([crowd()]) {
         for spacing in ["equal", "equiangular"] {
             let spacing = ("spacing", Value::Word(spacing.into()));
             let march = technique("ray-march", &[steps(128), spacing.clone()]);
@@ -38,7 +38,7 @@ fn marching_agrees_with_the_cpu() {
     }
 }
 
-/// Same factors. What differs: a light's picture, which the GPU sums up in columns, and the svd's own terms under it.
+/// Both have one set of factors. Differences: a light's texture, which the GPU sums up in columns, and the svd's own terms under it.
 #[test]
 fn svd_agrees_with_the_cpu_and_with_closed_forms() {
     let Some(gpu) = device_or_skip("the svd integrator on the GPU") else {
@@ -82,7 +82,7 @@ fn no_seam_about_the_epipole() {
     }
 }
 
-/// The stages of lights without pictures, and one of all of these lights.
+/// The stages of lights without textures, and one of all of these lights.
 fn plain_stages() -> Vec<Stage> {
     let mut stages = stages();
     stages.retain(|stage| stage.frame.lights.iter().all(|l| l.texture.is_none()));
@@ -109,7 +109,7 @@ fn of_the_map() -> tyndall::techniques::Technique {
     technique("reference", &[("tolerance", Value::Real(1e-3)), visibility])
 }
 
-/// The same map, with its exact texels on the CPU. What differs: corners where three depths meet, and edges of a cube;
+/// Both have one map, the CPU with its exact texels. Differences: corners where three depths meet, and edges of a cube;
 /// with half floats, where the device blends no others, their rounding.
 #[test]
 fn light_volumes_agree_with_the_map() {
@@ -120,11 +120,11 @@ fn light_volumes_agree_with_the_map() {
         return;
     };
     // Device, tolerance, and the bound of errors. Largest measured on lavapipe: 3.9e-3, 3.8e-3, 5.2e-3.
-    let ways = [(gpu, 0.0, 6e-3), (gpu, 0.5, 6e-3), (&plain, 0.5, 8e-3)];
-    let effects = ways.map(|(device, ..)| on::effect(device));
+    let cases = [(gpu, 0.0, 6e-3), (gpu, 0.5, 6e-3), (&plain, 0.5, 8e-3)];
+    let effects = cases.map(|(device, ..)| on::effect(device));
     for stage in plain_stages() {
         let exact = stage.on_cpu(of_the_map());
-        for ((device, tolerance, bound), effect) in ways.iter().zip(&effects) {
+        for ((device, tolerance, bound), effect) in cases.iter().zip(&effects) {
             let ours = on::on_gpu(device, effect, &stage, light_volume(*tolerance));
             let error = compare(&ours, &exact).expect("same size").rel_mae;
             assert!(error < *bound, "{}, {tolerance}: {error}", stage.name);
@@ -132,7 +132,7 @@ fn light_volumes_agree_with_the_map() {
     }
 }
 
-/// The same stage with one depth, or nothing, all over its maps, and no glass.
+/// A stage with one depth, or nothing, all over its maps, and no glass.
 fn with_flat_maps(mut stage: Stage, is_empty: bool) -> Stage {
     for (light, pictures) in stage.frame.lights.iter().zip(&mut stage.lights) {
         pictures.glass = None;
@@ -200,7 +200,7 @@ fn light_volumes_of_flat_maps_are_exact() {
     }
 }
 
-/// Where every texel stands out, the full mesh is drawn: its list would be too long.
+/// If every texel stands out, the full mesh is drawn: its list would be too long.
 #[test]
 fn light_volumes_of_noise_are_drawn_in_full() {
     let Some(gpu) = device_or_skip("light volumes of noise") else {
@@ -225,7 +225,7 @@ fn light_volumes_of_noise_are_drawn_in_full() {
     }
 }
 
-/// Where nothing blocks the light, all jumps of visibility add up to the closed form.
+/// If nothing blocks the light, all jumps of visibility add up to the closed form.
 #[test]
 fn light_volumes_of_empty_maps_are_the_closed_form() {
     let Some(gpu) = device_or_skip("light volumes of empty maps") else {
@@ -252,8 +252,8 @@ fn voxels(resolution: i64) -> tyndall::techniques::Technique {
     technique("vsv", &[("resolution", Value::Integer(resolution))])
 }
 
-/// The same map, with its exact texels on the CPU. What differs: borders, which voxels move by up to half of one, and
-/// fewer with finer voxels; pictures and glass, which are taken in the middle of a voxel.
+/// Both have one map, the CPU with its exact texels. Differences: borders, which voxels move by up to half of one, and
+/// fewer with finer voxels; textures and glass, which are taken in the middle of a voxel.
 #[test]
 fn voxels_agree_with_the_map() {
     let Some(gpu) = device_or_skip("voxelized shadow volumes on the GPU") else {
@@ -468,7 +468,7 @@ fn what_cannot_be_made_is_refused() {
         &frame_by,
     );
     assert_eq!(
-        refused.expect_err("a light through a picture").to_string(),
+        refused.expect_err("a light through a texture").to_string(),
         "technique `light-volume` cannot do light textures (lights[2])"
     );
 }

@@ -200,7 +200,7 @@ fn output(
     gpu.read_texture(view.output().texture()).expect("readable")
 }
 
-/// Lights without pictures, without glass.
+/// Lights without textures, without glass.
 fn plain_stages() -> Vec<Stage> {
     let mut stages = stages();
     stages.retain(|stage| {
@@ -291,7 +291,7 @@ fn without_shadows_light_is_in_closed_form() {
     }
 }
 
-/// What is not known to be bounded is marched; so is light through pictures and glass.
+/// Rays that are not known to be bounded are marched; so is light through textures and glass.
 #[test]
 fn without_bounds_rays_are_marched() {
     let Some(gpu) = device_or_skip("hybrid without bounds") else {

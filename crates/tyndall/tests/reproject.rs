@@ -13,7 +13,7 @@ use tyndall::{
 };
 use tyndall_testkit::device::device_or_skip;
 
-/// Width and height of the pictures [pixels].
+/// Width and height of the images [pixels].
 const SIZE: [u32; 2] = [128, 96];
 const PIXELS: u32 = SIZE[0] * SIZE[1];
 /// Texels of a shadow map's side.
@@ -67,12 +67,12 @@ impl Hall {
         hall
     }
 
-    /// The same with something in it.
+    /// A room with something in it.
     fn with(&self, more: [Vec3; 2]) -> Self {
         Self::of([&self.boxes[..], &[more]].concat(), self.light)
     }
 
-    /// Where a ray first meets a box.
+    /// The distance at which a ray first meets a box.
     fn first_box(&self, origin: Vec3, way: Vec3) -> f32 {
         let spans = self.boxes.iter().map(|b| inside(*b, origin, way));
         let ahead = spans.filter(|[near, far]| near < far && *near > 0.0);
@@ -105,7 +105,7 @@ impl Hall {
         (0..faces * MAP * MAP).map(texel).collect()
     }
 
-    /// What the light's map holds at a place of its clip space.
+    /// The light's map at a place of its clip space.
     fn shadow_depth(&self, face: u32, x: f32, y: f32) -> f32 {
         match (self.light.shadow, self.light.emitter) {
             (
@@ -277,7 +277,7 @@ fn worst(picture: &[[f64; 3]], reference: &[[f64; 3]]) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// What a run of frames came to.
+/// Errors of a run of frames.
 #[derive(Debug, Default)]
 struct Film {
     /// Mean share of the pixels that were computed.

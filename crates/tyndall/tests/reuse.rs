@@ -370,7 +370,7 @@ fn views_of_mask_and_age_show_what_was_computed() {
     }
 }
 
-/// What a map was made into for the frame before is there still when passes that would make it again are left out.
+/// Data derived from a map for the frame before is there still when passes that would derive it again are left out.
 #[test]
 fn revisions_and_reuse_go_together() {
     let Some(gpu) = device_or_skip("revisions and reuse") else {

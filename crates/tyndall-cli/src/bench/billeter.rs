@@ -10,19 +10,19 @@ use tyndall::{
 use tyndall_scene::shadow_fit;
 
 use super::{
-    Bench, Report,
     paper::{self, REDUCTION},
+    report::{Bench, Report},
     subject::Subject,
     table::{Cell, Table},
 };
 use crate::{
     failure::Failure,
-    measure::{Budget, Stage, Timing, Visibility, error_of},
-    progress::Stages,
-    setup::Setup,
+    load::ShotFrame,
+    measure::{Budget, DrawnFrame, Timing, Visibility, error_of},
+    progress::Progress,
 };
 
-/// What is measured.
+/// Scene and sizes.
 pub(super) struct LightVolumes {
     pub(super) scene: Subject,
     /// Width and height of the picture [pixels].
@@ -59,17 +59,17 @@ const COLUMNS: [&str; 10] = [
 pub(super) fn run(
     suite: &LightVolumes,
     bench: &Bench,
-    stages: &mut Stages,
+    progress: &mut Progress,
 ) -> Result<Report, Failure> {
     let mut rows = Vec::new();
     let mut title = String::new();
     for map in suite.maps {
         let loaded = suite
             .scene
-            .load(bench.assets.as_deref(), suite.size, *map, stages)?;
-        let (setup, what) = (with_second_sun(loaded.0), loaded.1);
+            .load(bench.assets.as_deref(), suite.size, *map, progress)?;
+        let (shot_frame, what) = (with_second_sun(loaded.0), loaded.1);
         title = format!("{} ({what}), two suns", suite.scene.name);
-        rows.extend(measure(*map, &setup, bench, stages)?);
+        rows.extend(measure(*map, &shot_frame, bench, progress)?);
     }
     let tables = if rows.is_empty() {
         vec![paper::nothing(&title)]
@@ -93,8 +93,8 @@ pub(super) fn run(
 }
 
 /// The scene lit by its sun and another one from the opposite side.
-fn with_second_sun(mut setup: Setup) -> Setup {
-    let (first, extra) = (setup.frame.lights.first(), setup.lights.first());
+fn with_second_sun(mut shot_frame: ShotFrame) -> ShotFrame {
+    let (first, extra) = (shot_frame.frame.lights.first(), shot_frame.lights.first());
     if let (Some(first), Some(extra)) = (first, extra)
         && let Emitter::Directional {
             direction: [x, y, z],
@@ -106,12 +106,12 @@ fn with_second_sun(mut setup: Setup) -> Setup {
             direction: [-x, y, -z],
             illuminance,
         };
-        second.shadow = shadow_fit::fit(setup.tracer.geometry(), &second.emitter);
+        second.shadow = shadow_fit::fit(shot_frame.tracer.geometry(), &second.emitter);
         let extra = extra.clone();
-        setup.frame.lights.push(second);
-        setup.lights.push(extra);
+        shot_frame.frame.lights.push(second);
+        shot_frame.lights.push(extra);
     }
-    setup
+    shot_frame
 }
 
 fn light_volume(tolerance: f64) -> Option<Technique> {
@@ -122,33 +122,32 @@ fn light_volume(tolerance: f64) -> Option<Technique> {
 
 fn measure(
     map: u32,
-    setup: &Setup,
+    shot_frame: &ShotFrame,
     bench: &Bench,
-    stages: &mut Stages,
+    progress: &mut Progress,
 ) -> Result<Vec<Vec<Cell>>, Failure> {
-    let mut small = setup.clone();
-    small.size = setup.size.map(|side| (side / REDUCTION).max(1));
-    let small_stage = Stage::new(&small, &bench.backend, stages)?;
+    let small = paper::reduced(shot_frame, REDUCTION);
+    let small_drawn = DrawnFrame::new(&small, &bench.backend, progress)?;
     let techniques: Vec<Technique> = MESHES
         .iter()
         .filter_map(|(_, tolerance)| light_volume(*tolerance))
-        .filter(|technique| small_stage.place(technique.info()).is_some())
+        .filter(|technique| small_drawn.place(technique.info()).is_some())
         .collect();
     if techniques.is_empty() {
         return Ok(Vec::new());
     }
-    let truth = stages.run("reference", |_| {
-        small_stage.reference(Visibility::ShadowMap)
+    let truth = progress.run("reference", |_| {
+        small_drawn.reference(Visibility::ShadowMap)
     })?;
-    let stage = Stage::new(setup, &bench.backend, stages)?;
-    let (timings, limit) = stages.run(&format!("time {map}^2 maps"), |_| {
-        stage.time_with_stable_maps(&techniques, &BUDGET)
+    let drawn = DrawnFrame::new(shot_frame, &bench.backend, progress)?;
+    let (timings, limit) = progress.run(&format!("time {map}^2 maps"), |_| {
+        drawn.time_with_stable_maps(&techniques, &BUDGET)
     })?;
     let meshes = techniques.iter().zip(MESHES).zip(&timings);
     meshes
         .map(|((technique, (mesh, _)), [anew, stays])| {
-            let error = error_of(&small_stage.in_scatter(technique)?, &truth)?.rel_mae;
-            let counts = stage.counts(technique)?;
+            let error = error_of(&small_drawn.in_scatter(technique)?, &truth)?.rel_mae;
+            let counts = drawn.counts(technique)?;
             let sum = |which: &str| -> u64 {
                 let of_kind = counts.iter().filter(|(name, _)| name.contains(which));
                 of_kind.map(|(_, count)| count).sum()

@@ -11,18 +11,18 @@ use tyndall::{
     techniques::{Backends, Technique},
 };
 use tyndall_scene::geometry::Bounds;
-use tyndall_testkit::samples::in_box;
 
 use super::{
-    Bench, Report,
+    report::{Bench, Report},
     table::{Cell, Table},
 };
 use crate::{
     failure::Failure,
-    measure::{Place, Stage, Visibility, ray_march},
+    load::{LoadedShot, ShotFrame},
+    measure::{DrawnFrame, Place, Visibility, ray_march},
     picture::Picture,
-    progress::Stages,
-    setup::Setup,
+    progress::Progress,
+    samples::in_box,
     shot::{Override, Shot},
 };
 
@@ -34,7 +34,7 @@ const ASPECT: f32 = PIXELS[0] as f32 / PIXELS[1] as f32;
 const MAP: &str = "light.0.shadow_map=512";
 const STEPS: u32 = 512;
 const TECHNIQUES: [&str; 2] = ["min-max", "epipolar"];
-/// How much worse than brute force's 99th percentile a pixel may be.
+/// Multiple of brute force's 99th percentile that a pixel's error may reach.
 const FACTOR: f64 = 2.0;
 
 const BUILT_IN: [&str; 3] = ["builtin:church", "builtin:forest", "builtin:terrain"];
@@ -42,11 +42,14 @@ const BOX_WALL: &str = "box-wall.glb";
 const BOX_WALL_SHOT: &str = include_str!("shots/box-wall.toml");
 
 /// Renders from so many places in every scene.
-pub(super) fn run(poses: usize, bench: &Bench, stages: &mut Stages) -> Result<Report, Failure> {
-    let mut setups = Vec::new();
+pub(super) fn run(poses: usize, bench: &Bench, progress: &mut Progress) -> Result<Report, Failure> {
+    let mut shot_frames = Vec::new();
     for name in BUILT_IN {
         let shot = Shot::load(name.as_ref(), None, &overrides()?).map_err(Failure::input)?;
-        setups.push((name.to_owned(), Setup::new(&shot, stages)?));
+        shot_frames.push((
+            name.to_owned(),
+            LoadedShot::at_rest(&shot, progress)?.frame(0)?,
+        ));
     }
     let box_wall = bench.assets.as_ref().map(|folder| folder.join(BOX_WALL));
     let mut notes = vec![format!(
@@ -55,15 +58,16 @@ pub(super) fn run(poses: usize, bench: &Bench, stages: &mut Stages) -> Result<Re
     match box_wall.filter(|file| file.is_file()) {
         Some(file) => {
             let shot = Shot::of_text(&file.with_extension("toml"), BOX_WALL_SHOT, &overrides()?);
-            let setup = Setup::new(&shot.map_err(Failure::input)?, stages)?;
-            setups.push((BOX_WALL.to_owned(), setup));
+            let shot_frame =
+                LoadedShot::at_rest(&shot.map_err(Failure::input)?, progress)?.frame(0)?;
+            shot_frames.push((BOX_WALL.to_owned(), shot_frame));
         }
         None => notes.push(format!("skipped: {BOX_WALL} is not among the assets")),
     }
     let mut rows = Vec::new();
-    for (name, setup) in &setups {
-        let errors = stages.run(&format!("{poses} poses of {name}"), |progress| {
-            of_scene(setup, poses, bench, progress)
+    for (name, shot_frame) in &shot_frames {
+        let errors = progress.run(&format!("{poses} poses of {name}"), |report| {
+            of_scene(shot_frame, poses, bench, report)
         })?;
         rows.extend(errors.rows(name));
     }
@@ -110,12 +114,12 @@ struct OfTechnique {
 }
 
 fn of_scene(
-    setup: &Setup,
+    shot_frame: &ShotFrame,
     poses: usize,
     bench: &Bench,
-    progress: &dyn Fn(u64, u64),
+    report: &dyn Fn(u64, u64),
 ) -> Result<Errors, Failure> {
-    let mut stage = Stage::new(setup, &bench.backend, &mut Stages::default())?;
+    let mut drawn = DrawnFrame::new(shot_frame, &bench.backend, &mut Progress::default())?;
     let techniques: Vec<Technique> = TECHNIQUES
         .iter()
         .filter_map(|name| Technique::from_name(name))
@@ -123,27 +127,27 @@ fn of_scene(
     let mut errors = Errors::default();
     let numbers = in_box(1, poses, [const { -1.0..=1.0 }; 9]);
     for (pose, x) in numbers.iter().rev().take(poses).enumerate() {
-        stage.look_from(camera(setup, pose, x))?;
-        let truth = stage.reference(Visibility::ShadowMap)?;
-        let march = stage.in_scatter(&ray_march(STEPS))?;
+        drawn.look_from(camera(shot_frame, pose, x))?;
+        let truth = drawn.reference(Visibility::ShadowMap)?;
+        let march = drawn.in_scatter(&ray_march(STEPS))?;
         errors.march.extend(differences(&march, &truth));
         for technique in &techniques {
             let info = technique.info();
             if info.backends != Backends::Gpu {
-                let picture = stage.in_scatter_on_cpu(technique)?;
+                let picture = drawn.in_scatter_on_cpu(technique)?;
                 errors.add(info.name, Place::Cpu, pose, differences(&picture, &truth));
             }
-            if stage.place(info) == Some(Place::Gpu) {
-                let picture = stage.in_scatter(technique)?;
+            if drawn.place(info) == Some(Place::Gpu) {
+                let picture = drawn.in_scatter(technique)?;
                 errors.add(info.name, Place::Gpu, pose, differences(&picture, &truth));
             }
         }
-        progress(pose as u64 + 1, poses as u64);
+        report(pose as u64 + 1, poses as u64);
     }
     Ok(errors)
 }
 
-/// Of each pixel and channel, relative to the truth's mean; infinite where a value is not finite.
+/// Errors of each pixel and channel, relative to the truth's mean; infinite where a value is not finite.
 fn differences(picture: &Picture, truth: &Picture) -> Vec<f64> {
     let values = |picture: &Picture| -> Vec<f64> {
         let channels = picture.pixels.as_flattened().iter();
@@ -206,9 +210,9 @@ fn p99(sorted: &[f64]) -> f64 {
 
 /// Camera number `pose` of random numbers within [-1, 1]: anywhere, with the light at a chosen place of the picture, at the
 /// light, or from outside; every tenth orthographic, every tenth wide.
-fn camera(setup: &Setup, pose: usize, x: &[f32; 9]) -> Camera {
+fn camera(shot_frame: &ShotFrame, pose: usize, x: &[f32; 9]) -> Camera {
     let vector = |n: usize| vec3(x[n], x[n + 1], x[n + 2]);
-    let bounds = setup.tracer.geometry().bounds();
+    let bounds = shot_frame.tracer.geometry().bounds();
     let Bounds { min, max } = bounds.unwrap_or(Bounds {
         min: Vec3::NEG_ONE,
         max: Vec3::ONE,
@@ -220,7 +224,7 @@ fn camera(setup: &Setup, pose: usize, x: &[f32; 9]) -> Camera {
     let (width, radius) = (jitter.z.abs(), half.length());
     let wide = pose % 10 == 4;
     let yfov = if wide { 2.4 } else { 0.3 + 1.2 * width };
-    let light = setup.frame.lights[0].emitter;
+    let light = shot_frame.frame.lights[0].emitter;
     let (eye, turn) = match pose % 5 {
         1 => {
             let seen = epipole(pose / 5, [jitter.x, jitter.y], yfov);

@@ -1,4 +1,4 @@
-//! How time and memory grow: one quantity varied at a time, and the power law that fits.
+//! Growth of time and memory: one quantity varied at a time, and the power law that fits.
 
 use std::{sync::Arc, time::Duration};
 
@@ -10,15 +10,15 @@ use tyndall_scene::{
 };
 
 use super::{
-    Bench, Report,
     fit::PowerLaw,
+    report::{Bench, Report},
     table::{Cell, Table},
 };
 use crate::{
     failure::Failure,
-    measure::{Budget, Stage, Timing},
-    progress::Stages,
-    setup::{Setup, built},
+    load::{LoadedShot, ShotFrame, built},
+    measure::{Budget, DrawnFrame, Timing},
+    progress::Progress,
     shot::Shot,
 };
 
@@ -31,7 +31,7 @@ const MAP: u32 = 1024;
 const WIDTHS: [u32; 5] = [80, 160, 240, 320, 480];
 /// Sides of shadow maps [texels].
 const MAPS: [u32; 5] = [256, 512, 1024, 2048, 4096];
-/// How often every triangle is cut in four.
+/// Numbers of times that every triangle is cut in four.
 const SUBDIVISIONS: [u32; 3] = [0, 1, 2];
 /// Whole-number parameters that say how fine a technique works, and their values.
 const FINENESS: [&str; 6] = ["steps", "slices", "samples", "resolution", "vpls", "points"];
@@ -43,7 +43,7 @@ const BUDGET: Budget = Budget {
     time: Duration::from_secs(4),
 };
 
-/// What was measured at one value of a quantity.
+/// A measurement at one value of a quantity.
 struct Point {
     technique: &'static str,
     quantity: String,
@@ -52,58 +52,63 @@ struct Point {
 }
 
 /// Measures every technique on the table.
-pub(super) fn run(bench: &Bench, stages: &mut Stages) -> Result<Report, Failure> {
-    let base = base(stages)?;
+pub(super) fn run(bench: &Bench, progress: &mut Progress) -> Result<Report, Failure> {
+    let base = base(progress)?;
     let mut points = Vec::new();
     for width in WIDTHS {
-        let mut setup = base.clone();
-        setup.size = [width, width * SIZE[1] / SIZE[0]];
-        let pixels = f64::from(setup.size[0] * setup.size[1]);
-        points.extend(all(&setup, bench, ("pixels", pixels), stages)?);
+        let mut shot_frame = base.clone();
+        shot_frame.size = [width, width * SIZE[1] / SIZE[0]];
+        let pixels = f64::from(shot_frame.size[0] * shot_frame.size[1]);
+        points.extend(all(&shot_frame, bench, ("pixels", pixels), progress)?);
     }
     for side in MAPS {
-        let mut setup = base.clone();
-        setup
+        let mut shot_frame = base.clone();
+        shot_frame
             .lights
             .iter_mut()
             .for_each(|light| light.map_size = [side; 2]);
         let texels = f64::from(side).powi(2);
-        points.extend(all(&setup, bench, ("shadow-map texels", texels), stages)?);
+        points.extend(all(
+            &shot_frame,
+            bench,
+            ("shadow-map texels", texels),
+            progress,
+        )?);
     }
     for times in SUBDIVISIONS {
-        let setup = subdivided(&base, times);
-        let triangles = setup.tracer.geometry().len() as f64;
-        points.extend(all(&setup, bench, ("triangles", triangles), stages)?);
+        let shot_frame = subdivided(&base, times);
+        let triangles = shot_frame.tracer.geometry().len() as f64;
+        points.extend(all(&shot_frame, bench, ("triangles", triangles), progress)?);
     }
-    points.extend(fineness(&base, bench, stages)?);
+    points.extend(fineness(&base, bench, progress)?);
     Ok(Report {
         tables: vec![exponents(&points), measured(&points)],
         missing: Vec::new(),
     })
 }
 
-fn base(stages: &mut Stages) -> Result<Setup, Failure> {
+fn base(progress: &mut Progress) -> Result<ShotFrame, Failure> {
     let mut shot = Shot::load(SCENE.as_ref(), None, &[]).map_err(Failure::input)?;
     shot.size = SIZE;
-    let mut setup = Setup::new(&shot, stages)?;
-    setup
+    let mut shot_frame = LoadedShot::at_rest(&shot, progress)?.frame(0)?;
+    shot_frame
         .lights
         .iter_mut()
         .for_each(|light| light.map_size = [MAP; 2]);
-    Ok(setup)
+    Ok(shot_frame)
 }
 
 /// Times every technique that can do the shot, with its own defaults.
 fn all(
-    setup: &Setup,
+    shot_frame: &ShotFrame,
     bench: &Bench,
     (quantity, value): (&str, f64),
-    stages: &mut Stages,
+    progress: &mut Progress,
 ) -> Result<Vec<Point>, Failure> {
-    let stage = Stage::new(setup, &bench.backend, stages)?;
-    let techniques = stage.techniques();
-    let timings = stages.run(&format!("{quantity} = {value}"), |_| {
-        stage.time(&techniques, &BUDGET)
+    let drawn = DrawnFrame::new(shot_frame, &bench.backend, progress)?;
+    let techniques = drawn.techniques();
+    let timings = progress.run(&format!("{quantity} = {value}"), |_| {
+        drawn.time(&techniques, &BUDGET)
     })?;
     let point = |(technique, timing): (Technique, Timing)| Point {
         technique: technique.info().name,
@@ -115,10 +120,14 @@ fn all(
 }
 
 /// Times every technique at several values of each parameter that says how fine it works.
-fn fineness(setup: &Setup, bench: &Bench, stages: &mut Stages) -> Result<Vec<Point>, Failure> {
-    let stage = Stage::new(setup, &bench.backend, stages)?;
+fn fineness(
+    shot_frame: &ShotFrame,
+    bench: &Bench,
+    progress: &mut Progress,
+) -> Result<Vec<Point>, Failure> {
+    let drawn = DrawnFrame::new(shot_frame, &bench.backend, progress)?;
     let mut points = Vec::new();
-    for technique in stage.techniques() {
+    for technique in drawn.techniques() {
         for param in technique.params() {
             if !FINENESS.contains(&param.key) || !matches!(param.value, Value::Integer(_)) {
                 continue;
@@ -133,8 +142,8 @@ fn fineness(setup: &Setup, bench: &Bench, stages: &mut Stages) -> Result<Vec<Poi
                 .collect();
             let techniques: Vec<Technique> = varied.iter().map(|v| v.1.clone()).collect();
             let name = technique.info().name;
-            let timings = stages.run(&format!("{name}, {}", param.key), |_| {
-                stage.time(&techniques, &BUDGET)
+            let timings = progress.run(&format!("{name}, {}", param.key), |_| {
+                drawn.time(&techniques, &BUDGET)
             })?;
             points.extend(
                 varied
@@ -152,9 +161,9 @@ fn fineness(setup: &Setup, bench: &Bench, stages: &mut Stages) -> Result<Vec<Poi
     Ok(points)
 }
 
-/// The same surfaces of four times as many triangles, so many times.
-fn subdivided(setup: &Setup, times: u32) -> Setup {
-    let mut scene = Scene::clone(&setup.scene);
+/// Cuts every triangle in four, so many times; the surfaces stay.
+fn subdivided(shot_frame: &ShotFrame, times: u32) -> ShotFrame {
+    let mut scene = Scene::clone(&shot_frame.scene);
     for primitive in scene
         .meshes
         .iter_mut()
@@ -164,10 +173,10 @@ fn subdivided(setup: &Setup, times: u32) -> Setup {
             *primitive = subdivide(primitive);
         }
     }
-    Setup {
+    ShotFrame {
         tracer: Arc::new(built(Tracer::new(&scene))),
         scene: Arc::new(scene),
-        ..setup.clone()
+        ..shot_frame.clone()
     }
 }
 

@@ -1,4 +1,4 @@
-//! What the papers rendered: their scenes where those are at hand, else a built-in scene of the same kind.
+//! Subjects of the papers: their scenes where those are at hand, else a built-in scene of the same kind.
 
 use std::{
     path::{Path, PathBuf},
@@ -15,22 +15,22 @@ use tyndall_scene::{geometry::Bounds, shadow_fit};
 use crate::{
     failure::Failure,
     light_texture,
-    progress::Stages,
-    setup::Setup,
+    load::{LoadedShot, ShotFrame},
+    progress::Progress,
     shot::{Override, Shot},
 };
 
 /// A scene of a paper.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Subject {
-    /// What the paper calls it.
+    /// The paper's name for it.
     pub(super) name: &'static str,
     /// Its file among the assets, and how it is seen and lit.
     asset: Option<Asset>,
-    /// What is rendered in its place where the file is missing.
+    /// The scene that is rendered in its place where the file is missing.
     stand_in: &'static str,
-    /// Whether its light shines through a picture.
-    picture: bool,
+    /// Whether its light shines through a texture.
+    textured: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ const fn subject(name: &'static str, asset: Option<Asset>, stand_in: &'static st
         name,
         asset,
         stand_in,
-        picture: false,
+        textured: false,
     }
 }
 
@@ -64,7 +64,7 @@ pub(super) const SIBENIK: Subject = subject(
 );
 pub(super) const SIBENIKTEX: Subject = Subject {
     name: "SIBENIKTEX",
-    picture: true,
+    textured: true,
     ..SIBENIK
 };
 pub(super) const TREES: Subject = subject("TREES", None, "builtin:forest");
@@ -99,7 +99,7 @@ pub(super) const DONUTS_RECT: Subject = subject(
     "builtin:slats",
 );
 
-/// How files of scenes begin that are made by code.
+/// Beginning of the file names of scenes that are made by code.
 const BUILTIN: &str = "builtin:";
 
 pub(super) const HAIRBALL: Subject = subject(
@@ -112,8 +112,8 @@ pub(super) const ANGEL_RECT: Subject =
 pub(super) const CITY_RECT: Subject =
     subject("city", asset!("city.glb", "city-rect"), "builtin:city");
 
-/// The picture that SIBENIKTEX's light shines through, among the assets.
-const PICTURE: &str = "rose-window.png";
+/// The texture that SIBENIKTEX's light shines through, among the assets.
+const TEXTURE: &str = "rose-window.png";
 
 impl Subject {
     /// Loads it, and says what was loaded. `map` is the side of the shadow map [texels].
@@ -122,22 +122,22 @@ impl Subject {
         assets: Option<&Path>,
         size: [u32; 2],
         map: u32,
-        stages: &mut Stages,
-    ) -> Result<(Setup, String), Failure> {
+        progress: &mut Progress,
+    ) -> Result<(ShotFrame, String), Failure> {
         let (shot, mut what) = self.shot(assets, size, map)?;
-        let mut setup = Setup::new(&shot, stages)?;
-        if self.picture {
+        let mut shot_frame = LoadedShot::at_rest(&shot, progress)?.frame(0)?;
+        if self.textured {
             let file = assets
-                .map(|folder| folder.join(PICTURE))
+                .map(|folder| folder.join(TEXTURE))
                 .filter(|file| file.is_file());
             what += if file.is_some() {
                 ", light through a rose window"
             } else {
                 ", light through coloured rings"
             };
-            setup = with_picture(&setup, load_picture(file)?);
+            shot_frame = with_texture(&shot_frame, load_texture(file)?);
         }
-        Ok((setup, what))
+        Ok((shot_frame, what))
     }
 
     /// Its shot, and what it is of.
@@ -150,7 +150,7 @@ impl Subject {
         self.shot_with(&[], assets, size, map)
     }
 
-    /// The same with other values, each as `KEY=VALUE`.
+    /// Its shot with other values, each as `KEY=VALUE`, and what it is of.
     pub(super) fn shot_with(
         &self,
         values: &[&str],
@@ -195,7 +195,7 @@ impl Subject {
     }
 }
 
-/// Where the scenes are that can't be part of the repository: `shared/assets` of a folder above the current one or
+/// The folder of the scenes that can't be part of the repository: `shared/assets` of a folder above the current one or
 /// above this program.
 pub(super) fn find_assets() -> Option<PathBuf> {
     let starts = [std::env::current_dir(), std::env::current_exe()];
@@ -207,7 +207,7 @@ pub(super) fn find_assets() -> Option<PathBuf> {
         .find(|folder| folder.is_dir())
 }
 
-fn load_picture(file: Option<PathBuf>) -> Result<LightTexture, Failure> {
+fn load_texture(file: Option<PathBuf>) -> Result<LightTexture, Failure> {
     file.map_or_else(
         || Ok(coloured_rings()),
         |file| light_texture::load(&file).map_err(Failure::input),
@@ -236,8 +236,8 @@ fn coloured_rings() -> LightTexture {
 }
 
 /// The scene's middle and the radius of the sphere round it [m].
-pub(super) fn sphere(setup: &Setup) -> (Vec3, f32) {
-    let bounds = setup.tracer.geometry().bounds();
+pub(super) fn sphere(shot_frame: &ShotFrame) -> (Vec3, f32) {
+    let bounds = shot_frame.tracer.geometry().bounds();
     let bounds = bounds.unwrap_or(Bounds {
         min: Vec3::NEG_ONE,
         max: Vec3::ONE,
@@ -245,12 +245,14 @@ pub(super) fn sphere(setup: &Setup) -> (Vec3, f32) {
     (bounds.center(), 0.5 * bounds.extent().length())
 }
 
-/// The sun through a picture that covers the whole scene.
-fn with_picture(setup: &Setup, picture: LightTexture) -> Setup {
-    let mut setup = setup.clone();
-    let (center, radius) = sphere(&setup);
-    if let (Some(light), Some(extra)) = (setup.frame.lights.first_mut(), setup.lights.first_mut())
-        && let Emitter::Directional { direction, .. } = light.emitter
+/// The sun through a texture that covers all of the scene.
+fn with_texture(shot_frame: &ShotFrame, texture: LightTexture) -> ShotFrame {
+    let mut shot_frame = shot_frame.clone();
+    let (center, radius) = sphere(&shot_frame);
+    if let (Some(light), Some(extra)) = (
+        shot_frame.frame.lights.first_mut(),
+        shot_frame.lights.first_mut(),
+    ) && let Emitter::Directional { direction, .. } = light.emitter
     {
         let (x, y) = Vec3::from(direction).normalize().any_orthonormal_pair();
         light.texture = Some(TexturePlacement::Parallelogram {
@@ -258,20 +260,20 @@ fn with_picture(setup: &Setup, picture: LightTexture) -> Setup {
             edge_x: (2.0 * radius * x).to_array(),
             edge_y: (2.0 * radius * y).to_array(),
         });
-        extra.texture = Some(Arc::new(picture));
+        extra.texture = Some(Arc::new(texture));
     }
-    setup
+    shot_frame
 }
 
-/// The sun replaced by a spot light, far away in the same direction, whose cone holds the whole scene.
-pub(super) fn with_far_spot(setup: &Setup) -> Setup {
+/// The sun replaced by a spot light, far away in the same direction, whose cone holds all of the scene.
+pub(super) fn with_far_spot(shot_frame: &ShotFrame) -> ShotFrame {
     /// Distance in radii of the scene.
     const DISTANCE: f32 = 4.0;
-    let mut setup = setup.clone();
-    let (center, radius) = sphere(&setup);
+    let mut shot_frame = shot_frame.clone();
+    let (center, radius) = sphere(&shot_frame);
     let distance = DISTANCE * radius;
     let outer = (1.0 / DISTANCE).asin();
-    if let Some(light) = setup.frame.lights.first_mut()
+    if let Some(light) = shot_frame.frame.lights.first_mut()
         && let Emitter::Directional {
             direction,
             illuminance,
@@ -284,11 +286,11 @@ pub(super) fn with_far_spot(setup: &Setup) -> Setup {
             inner: 0.9 * outer,
             outer,
         };
-        light.shadow = shadow_fit::fit(setup.tracer.geometry(), &light.emitter);
+        light.shadow = shadow_fit::fit(shot_frame.tracer.geometry(), &light.emitter);
         light.texture = None;
-        setup.lights[0].texture = None;
+        shot_frame.lights[0].texture = None;
     }
-    setup
+    shot_frame
 }
 
 #[cfg(test)]
@@ -324,19 +326,24 @@ mod tests {
 
     #[test]
     fn without_assets_a_built_in_scene_stands_in_and_is_named() {
-        let (setup, what) = Subject {
+        let (shot_frame, what) = Subject {
             stand_in: "builtin:slats",
             ..SIBENIKTEX
         }
-        .load(None, [32, 24], 64, &mut Stages::default())
+        .load(None, [32, 24], 64, &mut Progress::default())
         .unwrap();
         assert_eq!(
             what,
             "builtin:slats in its place, light through coloured rings"
         );
-        assert_eq!((setup.size, setup.lights[0].map_size), ([32, 24], [64, 64]));
-        assert!(setup.lights[0].texture.is_some() && setup.frame.lights[0].texture.is_some());
-        let spot = with_far_spot(&setup);
+        assert_eq!(
+            (shot_frame.size, shot_frame.lights[0].map_size),
+            ([32, 24], [64, 64])
+        );
+        assert!(
+            shot_frame.lights[0].texture.is_some() && shot_frame.frame.lights[0].texture.is_some()
+        );
+        let spot = with_far_spot(&shot_frame);
         assert!(spot.lights[0].texture.is_none() && spot.frame.lights[0].texture.is_none());
         assert!(matches!(spot.frame.lights[0].emitter, Emitter::Spot { .. }));
         assert!(spot.frame.lights[0].shadow.is_some());

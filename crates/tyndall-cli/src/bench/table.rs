@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::measure::Spread;
 
-/// What stands in a table.
+/// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Cell {
     /// Words.
@@ -17,7 +17,7 @@ pub(super) enum Cell {
     Time(Spread),
     /// A count.
     Count(u64),
-    /// What was not measured.
+    /// Not measured.
     Empty,
 }
 

@@ -1,6 +1,23 @@
 //! Whole suites on tiny pictures.
 
-use super::*;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use tyndall::techniques::Technique;
+
+use super::{
+    billeter, lin,
+    paper::{self, Paper},
+    poses,
+    report::{Bench, Report, header},
+    subject,
+    suites::SUITES,
+    table::Table,
+};
+use crate::{
+    backend::{Backend, BackendChoice},
+    progress::Progress,
+};
 
 const TINY: Paper = Paper {
     techniques: &["min-max", "sleight-of-hand"],
@@ -30,8 +47,8 @@ fn row<'a>(table: &'a Value, technique: &str) -> &'a Value {
 #[test]
 fn a_paper_gets_its_tables_and_what_is_missing_is_named() {
     let choice = BackendChoice::Auto;
-    let bench = bench(Backend::choose(choice, Technique::default().info()).unwrap());
-    let report = paper::run(&TINY, &bench, &mut Stages::default()).unwrap();
+    let bench = bench(Backend::choose(choice, &[Technique::default().info()]).unwrap());
+    let report = paper::run(&TINY, &bench, &mut Progress::default()).unwrap();
     assert_eq!(report.missing, ["sleight-of-hand"]);
     let json: Vec<Value> = report.tables.iter().map(Table::to_json).collect();
     let [quality, _passes, maps] = &json[..] else {
@@ -61,7 +78,7 @@ fn brute_force_stands_alone_where_a_papers_techniques_are_missing() {
         spot_maps: &[],
         ..TINY
     };
-    let report = paper::run(&paper, &bench(Backend::Cpu), &mut Stages::default()).unwrap();
+    let report = paper::run(&paper, &bench(Backend::Cpu), &mut Progress::default()).unwrap();
     let quality = report.tables[0].to_json();
     let march = row(&quality, "ray-march");
     assert_eq!(march["on"], "CPU");
@@ -78,13 +95,13 @@ fn a_report_says_what_it_is_and_what_is_missing() {
         tables: Vec::new(),
         missing: vec!["a", "b"],
     };
-    let text = report.to_text(suite, Duration::from_secs(7));
+    let text = report.to_text(suite.name, suite.about, Duration::from_secs(7));
     assert!(text.starts_with("\n== chen: "), "{text}");
     assert!(
         text.contains("\nmissing: a, b\n") && text.ends_with("measured in 7 s\n"),
         "{text}"
     );
-    assert_eq!(report.to_json(suite)["missing"], json!(["a", "b"]));
+    assert_eq!(report.to_json(suite.name)["missing"], json!(["a", "b"]));
     let header = header(&bench(Backend::Cpu));
     assert!(
         header
@@ -97,13 +114,13 @@ fn a_report_says_what_it_is_and_what_is_missing() {
 #[test]
 fn no_place_makes_min_max_as_wrong_as_brute_force() {
     let bench = Bench {
-        backend: Backend::choose(BackendChoice::Auto, Technique::default().info()).unwrap(),
+        backend: Backend::choose(BackendChoice::Auto, &[Technique::default().info()]).unwrap(),
         assets: subject::find_assets(),
     };
     if bench.assets.is_none() {
         eprintln!("skipped: box-wall.glb, which is not among the assets");
     }
-    let report = poses::run(5, &bench, &mut Stages::default()).unwrap();
+    let report = poses::run(5, &bench, &mut Progress::default()).unwrap();
     let table = report.tables[0].to_json();
     let rows = table["rows"].as_array().unwrap();
     assert!(rows.len() >= 3, "{table:#}");
@@ -126,7 +143,7 @@ fn light_volumes_are_measured_by_mesh_and_map() {
         size: [64, 48],
         maps: &[64],
     };
-    let report = billeter::run(&suite, &bench(gpu), &mut Stages::default()).unwrap();
+    let report = billeter::run(&suite, &bench(gpu), &mut Progress::default()).unwrap();
     let json: Vec<Value> = report.tables.iter().map(Table::to_json).collect();
     assert_eq!(
         json[0]["title"],
@@ -152,7 +169,7 @@ fn light_volumes_are_measured_by_mesh_and_map() {
 
 #[test]
 fn reuse_is_timed_and_what_is_left_stale_is_counted() {
-    let backend = Backend::choose(BackendChoice::Auto, Technique::default().info()).unwrap();
+    let backend = Backend::choose(BackendChoice::Auto, &[Technique::default().info()]).unwrap();
     let is_gpu = matches!(backend, Backend::Gpu(_));
     let films = lin::Films {
         scenes: &[(subject::YEAH_RIGHT, "1.10")],
@@ -162,7 +179,7 @@ fn reuse_is_timed_and_what_is_left_stale_is_counted() {
         compared_size: [48, 36],
         compared: 3,
     };
-    let report = lin::run(&films, &bench(backend), &mut Stages::default()).unwrap();
+    let report = lin::run(&films, &bench(backend), &mut Progress::default()).unwrap();
     if !is_gpu {
         return;
     }

@@ -5,24 +5,24 @@ use std::time::Duration;
 use tyndall::techniques::Technique;
 
 use super::{
-    Bench, Report,
     paper::{self, Paper, contender},
+    report::{Bench, Report},
     table::{Cell, Table},
 };
 use crate::{
     failure::Failure,
-    measure::{Budget, Stage, Timing},
-    progress::Stages,
+    measure::{Budget, DrawnFrame, Timing},
+    progress::Progress,
 };
 
-/// What is measured.
+/// The paper's tables, and sides of shadow maps.
 pub(super) struct Epipolar {
     pub(super) paper: Paper,
     /// Sides of the shadow maps of the table of trees [texels].
     pub(super) maps: &'static [u32],
 }
 
-/// The ways of marching; the first is what others are compared with.
+/// Kinds of marching; others are compared with the first.
 const TREES: [&str; 2] = ["epipolar tree=none", "epipolar tree=min-max"];
 
 /// The stages that depend on how rays are marched.
@@ -41,18 +41,22 @@ const BUDGET: Budget = Budget {
 };
 
 /// Measures the suite.
-pub(super) fn run(suite: &Epipolar, bench: &Bench, stages: &mut Stages) -> Result<Report, Failure> {
-    let mut report = paper::run(&suite.paper, bench, stages)?;
+pub(super) fn run(
+    suite: &Epipolar,
+    bench: &Bench,
+    progress: &mut Progress,
+) -> Result<Report, Failure> {
+    let mut report = paper::run(&suite.paper, bench, progress)?;
     let scenes = suite.paper.scenes.iter();
     for subject in scenes {
         let mut rows = Vec::new();
         let mut title = String::new();
         for map in suite.maps {
             let assets = bench.assets.as_deref();
-            let (setup, what) = subject.load(assets, suite.paper.size, *map, stages)?;
+            let (shot_frame, what) = subject.load(assets, suite.paper.size, *map, progress)?;
             title = format!("{} ({what}): marching, by shadow map", subject.name);
-            let stage = Stage::new(&setup, &bench.backend, stages)?;
-            rows.extend(measure(*map, &stage, stages)?);
+            let drawn = DrawnFrame::new(&shot_frame, &bench.backend, progress)?;
+            rows.extend(measure(*map, &drawn, progress)?);
         }
         report.tables.push(Table {
             title,
@@ -71,34 +75,38 @@ pub(super) fn run(suite: &Epipolar, bench: &Bench, stages: &mut Stages) -> Resul
     Ok(report)
 }
 
-fn measure(map: u32, stage: &Stage<'_>, stages: &mut Stages) -> Result<Vec<Vec<Cell>>, Failure> {
+fn measure(
+    map: u32,
+    drawn: &DrawnFrame<'_>,
+    progress: &mut Progress,
+) -> Result<Vec<Vec<Cell>>, Failure> {
     let (texts, techniques): (Vec<&str>, Vec<Technique>) = TREES
         .iter()
         .filter_map(|text| Some((*text, contender(text)?)))
-        .filter(|(_, technique)| stage.place(technique.info()).is_some())
+        .filter(|(_, technique)| drawn.place(technique.info()).is_some())
         .unzip();
-    let timings = stages.run(&format!("time trees of a {map}^2 map"), |_| {
-        stage.time(&techniques, &BUDGET)
+    let timings = progress.run(&format!("time trees of a {map}^2 map"), |_| {
+        drawn.time(&techniques, &BUDGET)
     })?;
     let times: Vec<[f64; 2]> = timings
         .techniques
         .iter()
         .map(|(_, timing)| [marching(timing), timing.total().median])
         .collect();
-    let row = |(text, [marching, whole]): (&&str, &[f64; 2])| {
+    let row = |(text, [marching, total]): (&&str, &[f64; 2])| {
         vec![
             Cell::Count(map.into()),
             Cell::text(*text),
             Cell::Number(*marching),
             Cell::Number(times[0][0] / marching),
-            Cell::Number(*whole),
-            Cell::Number(times[0][1] / whole),
+            Cell::Number(*total),
+            Cell::Number(times[0][1] / total),
         ]
     };
     Ok(texts.iter().zip(&times).map(row).collect())
 }
 
-/// What marching takes, trees counted in [ms].
+/// Time of marching, trees included [ms].
 fn marching(timing: &Timing) -> f64 {
     let passes = timing.passes.iter();
     passes

@@ -6,13 +6,13 @@ use tyndall::techniques::{Backends, TABLE, Technique, TechniqueInfo};
 
 use crate::{
     args::{CompareArgs, ReferenceChoice},
+    backend::Backend,
     compare::{Comparison, Subject, files, settings},
     failure::Failure,
-    measure::{Stage, Visibility},
+    load::LoadedShot,
+    measure::{DrawnFrame, Visibility},
     output::check_folder,
-    progress::Stages,
-    render::Backend,
-    setup::Setup,
+    progress::Progress,
     shot::Shot,
 };
 
@@ -26,12 +26,16 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
     if shot.temporal.is_some() || shot.animation.is_some() {
         eprintln!("note: the shot is a sequence; its first frame is compared");
     }
+    let mut lights = shot.lights.iter().flatten();
+    if lights.any(|light| light.technique.is_some()) {
+        eprintln!("note: each technique computes all lights, whatever technique a light names");
+    }
 
-    let mut stages = Stages::default();
-    let backend = Backend::choose(args.backend, decisive(&args.techniques))?;
-    let setup = Setup::new(&shot, &mut stages)?;
-    let stage = Stage::new(&setup, &backend, &mut stages)?;
-    let techniques = techniques(args, &shot, &stage)?;
+    let mut progress = Progress::default();
+    let backend = Backend::choose(args.backend, &[decisive(&args.techniques)])?;
+    let shot_frame = LoadedShot::at_rest(&shot, &mut progress)?.frame(0)?;
+    let drawn = DrawnFrame::new(&shot_frame, &backend, &mut progress)?;
+    let techniques = techniques(args, &shot, &drawn)?;
     let candidates: Vec<_> = techniques.iter().flat_map(settings::candidates).collect();
     files::make_folder(&folder).map_err(Failure::input)?;
 
@@ -46,7 +50,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<(), Failure> {
         adapter: backend.adapter().cloned(),
         left_out: left_out(args, &techniques),
     };
-    let comparison = Comparison::measure(subject, &stage, &candidates, visibility, &mut stages)?;
+    let comparison = Comparison::measure(subject, &drawn, &candidates, visibility, &mut progress)?;
     let page = files::write(&comparison, &folder).map_err(Failure::input)?;
     eprintln!("wrote {}", page.display());
     if let Some(file) = &args.json {
@@ -77,9 +81,9 @@ fn decisive(names: &[String]) -> &'static TechniqueInfo {
 fn techniques(
     args: &CompareArgs,
     shot: &Shot,
-    stage: &Stage<'_>,
+    drawn: &DrawnFrame<'_>,
 ) -> Result<Vec<Technique>, Failure> {
-    let mut techniques = stage.techniques();
+    let mut techniques = drawn.techniques();
     if !args.techniques.is_empty() {
         for name in &args.techniques {
             if !techniques.iter().any(|t| t.info().name == name) {
@@ -91,8 +95,9 @@ fn techniques(
         techniques.retain(|t| args.techniques.iter().any(|name| name == t.info().name));
     }
     for technique in &mut techniques {
-        if technique.info().name == shot.technique.info().name {
-            *technique = shot.technique.clone();
+        let own = shot.technique.as_ref();
+        if let Some(own) = own.filter(|own| own.info().name == technique.info().name) {
+            *technique = own.clone();
         }
     }
     Ok(techniques)

@@ -1,12 +1,14 @@
-//! `tyndall info`: what this machine, this program and a scene have to offer.
+//! `tyndall info`: what this machine, this program, a scene or a shot has to offer.
 
 use std::{
+    ffi::OsStr,
     fmt::Write,
     io::{ErrorKind, Write as _},
 };
 
 use tyndall::{
     frame::{Emitter, Projection},
+    phase::{self, PhaseInfo},
     techniques::{Backends, TABLE, TechniqueInfo},
 };
 use tyndall_scene::{
@@ -16,19 +18,29 @@ use tyndall_scene::{
 };
 
 use crate::{
-    args::InfoArgs, failure::Failure, render::AdapterDescription, setup::load_scene,
-    shot::SceneSource,
+    args::InfoArgs,
+    backend::AdapterDescription,
+    failure::Failure,
+    load::{LoadedShot, ShotFrame, load_scene},
+    progress::Progress,
+    shot::{SceneSource, Shot},
 };
 
 pub(super) fn run(args: &InfoArgs) -> Result<(), Failure> {
     let mut text = String::new();
-    let written = match &args.scene {
+    let written = match &args.input {
+        Some(file) if file.extension() == Some(OsStr::new("toml")) => {
+            let shot = Shot::load(file, None, &[]).map_err(Failure::input)?;
+            let frame = LoadedShot::at_rest(&shot, &mut Progress::quiet())?.frame(0)?;
+            write_shot(&mut text, &shot, &frame)
+        }
         Some(scene) => {
             let scene = load_scene(&SceneSource::of(scene))?;
             write_scene(&mut text, &scene)
         }
         None => write_adapters(&mut text)
             .and_then(|()| write_techniques(&mut text))
+            .and_then(|()| write_phases(&mut text))
             .and_then(|()| write_builtins(&mut text)),
     };
     written.map_err(Failure::input)?;
@@ -117,6 +129,22 @@ fn write_technique(text: &mut String, info: &TechniqueInfo) -> std::fmt::Result 
     Ok(())
 }
 
+fn write_phases(text: &mut String) -> std::fmt::Result {
+    writeln!(text, "\nPhase functions, for medium.phase.kind")?;
+    phase::TABLE
+        .iter()
+        .try_for_each(|info| write_phase(text, info))
+}
+
+fn write_phase(text: &mut String, info: &PhaseInfo) -> std::fmt::Result {
+    writeln!(text, "  {}: {}", info.name, info.about)?;
+    writeln!(text, "    {}", info.citation)?;
+    info.params.iter().try_for_each(|param| {
+        let (key, about, range) = (param.key, param.about, param.range);
+        writeln!(text, "    medium.phase.{key}: {about} ({range})")
+    })
+}
+
 fn write_builtins(text: &mut String) -> std::fmt::Result {
     writeln!(text, "\nBuilt-in scenes")?;
     builtin::BUILTINS
@@ -168,31 +196,64 @@ fn write_materials(text: &mut String, scene: &Scene) -> std::fmt::Result {
 
 fn write_lights(text: &mut String, scene: &Scene) -> std::fmt::Result {
     for (name, emitter) in framing::lights(scene) {
-        let what = match emitter {
-            Emitter::Directional {
-                direction,
-                illuminance,
-            } => format!("directional along {direction:?}, {illuminance:?} W/m^2"),
-            Emitter::Point {
-                position,
-                intensity,
-            } => format!("point at {position:?}, {intensity:?} W/sr"),
-            Emitter::Spot {
-                position,
-                direction,
-                intensity,
-                inner,
-                outer,
-            } => format!(
-                "spot at {position:?} along {direction:?}, {intensity:?} W/sr, {inner} to {outer} rad"
-            ),
-            Emitter::Rect {
-                center, radiance, ..
-            } => format!("rect at {center:?}, {radiance:?} W/(m^2 sr)"),
-        };
-        writeln!(text, "  light `{name}`: {what}")?;
+        writeln!(text, "  light `{name}`: {}", described(&emitter))?;
     }
     Ok(())
+}
+
+/// A shot: its scene, and the lights with the techniques that compute them on the GPU, or on the CPU where one runs there
+/// only.
+fn write_shot(text: &mut String, shot: &Shot, frame: &ShotFrame) -> std::fmt::Result {
+    writeln!(text, "{}: {}", shot.name(), shot.scene)?;
+    let named = shot.named_techniques();
+    let is_on_cpu = named.iter().any(|info| info.backends == Backends::Cpu);
+    let side = if is_on_cpu {
+        Backends::Cpu
+    } else {
+        Backends::Gpu
+    };
+    let techniques = frame.techniques_on(side);
+    for (index, (light, technique)) in frame.frame.lights.iter().zip(&techniques).enumerate() {
+        let params = technique.params();
+        let params: Vec<String> = params
+            .iter()
+            .map(|param| format!("{} = {}", param.key, param.value))
+            .collect();
+        writeln!(
+            text,
+            "  light.{index}: {}, by {} ({})",
+            described(&light.emitter),
+            technique.info().name,
+            params.join(", ")
+        )?;
+    }
+    write_scene(text, &frame.scene)
+}
+
+/// An emitter in words.
+fn described(emitter: &Emitter) -> String {
+    match emitter {
+        Emitter::Directional {
+            direction,
+            illuminance,
+        } => format!("directional along {direction:?}, {illuminance:?} W/m^2"),
+        Emitter::Point {
+            position,
+            intensity,
+        } => format!("point at {position:?}, {intensity:?} W/sr"),
+        Emitter::Spot {
+            position,
+            direction,
+            intensity,
+            inner,
+            outer,
+        } => format!(
+            "spot at {position:?} along {direction:?}, {intensity:?} W/sr, {inner} to {outer} rad"
+        ),
+        Emitter::Rect {
+            center, radiance, ..
+        } => format!("rect at {center:?}, {radiance:?} W/(m^2 sr)"),
+    }
 }
 
 fn write_cameras(text: &mut String, scene: &Scene) -> std::fmt::Result {

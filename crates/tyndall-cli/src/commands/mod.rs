@@ -19,7 +19,11 @@ pub fn run(cli: Cli) -> Result<(), Failure> {
         Command::Render(args) => render::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
-        Command::Bench(args) => bench::run(&args),
+        Command::Bench(args) => bench::run(
+            args.suite.as_deref(),
+            args.json.as_deref(),
+            args.assets.as_deref(),
+        ),
         Command::View(_) => Err(Failure::not_there_yet("view")),
     }
 }

@@ -7,14 +7,14 @@ use std::{
 
 use crate::{
     args::RenderArgs,
+    backend::Backend,
     failure::Failure,
     layer::{Layer, Layers},
+    load::LoadedShot,
     output::{Format, Pattern, check_folder, write_atomically},
     picture::automatic_exposure,
-    progress::Stages,
-    render::{self, Backend, Rendered, Session},
-    sequence::Sequence,
-    setup::Setup,
+    progress::Progress,
+    render::{self, Rendered, Renderer},
     shot::{FrameRange, Shot},
     stats::{FrameStats, Stats},
 };
@@ -27,7 +27,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
 }
 
-/// What the command line asks for, checked as far as it can be before any work is done.
+/// A job that the command line asks for, checked as far as it can be before any work is done.
 struct Job<'a> {
     args: &'a RenderArgs,
     start: Instant,
@@ -68,63 +68,56 @@ impl<'a> Job<'a> {
     }
 
     fn backend(&self) -> Result<Backend, Failure> {
-        Backend::choose(self.args.backend, self.shot.technique.info())
+        Backend::choose(self.args.backend, &self.shot.named_techniques())
     }
 
     fn render_picture(&self) -> Result<(), Failure> {
-        let mut stages = Stages::default();
+        let mut progress = Progress::default();
         let backend = self.backend()?;
-        let setup = match &self.shot.animation {
-            None => Setup::new(&self.shot, &mut stages)?,
+        let shot_frame = match &self.shot.animation {
+            None => LoadedShot::at_rest(&self.shot, &mut progress)?.frame(0)?,
             Some(animation) => {
                 let frames = animation.frames.unwrap_or(FrameRange { first: 0, last: 0 });
                 let first = frames.first;
                 eprintln!("note: the shot is a sequence; its frame {first} is rendered");
-                Sequence::new(&self.shot, frames, &mut stages)?.at(first)?
+                LoadedShot::moving(&self.shot, frames, &mut progress)?.frame(first)?
             }
         };
-        let rendered = render::render(&setup, &backend, &self.layers, &mut stages)?;
+        let rendered = render::render(&shot_frame, &backend, &self.layers, &mut progress)?;
         let ev = self.exposure(&rendered.layers);
         self.write(&self.output, &rendered.layers, ev)?;
         eprintln!("wrote {}", self.output.display());
-        self.write_stats(&backend, Some(&rendered), &[], &stages)
+        self.write_stats(&backend, Some(&rendered), &[], &progress)
     }
 
     fn render_sequence(&self, frames: FrameRange) -> Result<(), Failure> {
         let pattern = Pattern::of(&self.output).map_err(Failure::usage)?;
-        let wanted: Vec<u32> = frames
-            .frames()
-            .filter(|frame| !(self.args.resume && pattern.file(*frame).exists()))
-            .collect();
-        let skipped = frames.frames().count() - wanted.len();
-        if skipped > 0 {
-            eprintln!("frames {frames}: {skipped} skipped, their files exist");
-        }
+        let wanted = self.wanted(frames, &pattern);
         let Some(&first_wanted) = wanted.first() else {
             return Ok(());
         };
-        let mut stages = Stages::default();
+        let mut progress = Progress::default();
         let backend = self.backend()?;
-        let mut sequence = Sequence::new(&self.shot, frames, &mut stages)?;
-        let setup = sequence.at(first_wanted)?;
-        let temporal = self.shot.temporal.as_ref();
-        let layers = &self.layers;
-        let mut session = Session::new(&setup, temporal, &backend, layers, &mut stages)?;
-        drop(setup);
+        let mut loaded = LoadedShot::moving(&self.shot, frames, &mut progress)?;
+        let (temporal, layers) = (self.shot.temporal.as_ref(), &self.layers);
+        let mut renderer = {
+            let first = loaded.frame(first_wanted)?;
+            Renderer::new(&first, temporal, &backend, layers, &mut progress)?
+        };
         let mut ev = None;
         let mut done = Vec::new();
         let mut last = None;
-        stages.each(&format!("frames {frames}"), &wanted, |&frame| {
+        progress.each(&format!("frames {frames}"), &wanted, |&number| {
             let ev = match ev {
                 Some(ev) => ev,
-                None => *ev.insert(self.first_exposure(&mut sequence, &mut session)?),
+                None => *ev.insert(self.first_exposure(&mut loaded, &mut renderer)?),
             };
             let start = Instant::now();
-            let rendered = session.render(&sequence.at(frame)?, &mut Stages::quiet())?;
-            let file = pattern.file(frame);
+            let rendered = renderer.render(&loaded.frame(number)?, &mut Progress::quiet())?;
+            let file = pattern.file(number);
             self.write(&file, &rendered.layers, ev)?;
             done.push(FrameStats {
-                frame,
+                frame: number,
                 passes: rendered.passes.clone(),
                 counts: rendered.counts.clone(),
             });
@@ -132,20 +125,31 @@ impl<'a> Job<'a> {
             let milliseconds = start.elapsed().as_secs_f64() * 1e3;
             Ok(format!("wrote {}: {milliseconds:.0} ms", file.display()))
         })?;
-        self.write_stats(&backend, last.as_ref(), &done, &stages)
+        self.write_stats(&backend, last.as_ref(), &done, &progress)
+    }
+
+    /// The frames that are to be rendered; says how many are skipped because their files exist.
+    fn wanted(&self, frames: FrameRange, pattern: &Pattern) -> Vec<u32> {
+        let is_skipped = |frame: &u32| self.args.resume && pattern.file(*frame).exists();
+        let (skipped, wanted): (Vec<u32>, _) = frames.frames().partition(is_skipped);
+        if !skipped.is_empty() {
+            let count = skipped.len();
+            eprintln!("frames {frames}: {count} skipped, their files exist");
+        }
+        wanted
     }
 
     /// The exposure of all frames of a sequence [EV]: that of its first, for one that follows each frame flickers.
     fn first_exposure(
         &self,
-        sequence: &mut Sequence,
-        session: &mut Session<'_>,
+        loaded: &mut LoadedShot,
+        renderer: &mut Renderer<'_>,
     ) -> Result<f32, Failure> {
         if self.args.exposure.is_some() || self.format == Format::Exr {
             return Ok(self.args.exposure.unwrap_or_default());
         }
-        let first = sequence.at(sequence.range().first)?;
-        let rendered = session.render(&first, &mut Stages::quiet())?;
+        let first = loaded.frame(loaded.range().first)?;
+        let rendered = renderer.render(&first, &mut Progress::quiet())?;
         Ok(self.exposure(&rendered.layers))
     }
 
@@ -172,19 +176,19 @@ impl<'a> Job<'a> {
         backend: &Backend,
         rendered: Option<&Rendered>,
         frames: &[FrameStats],
-        stages: &Stages,
+        progress: &Progress,
     ) -> Result<(), Failure> {
         let (Some(file), Some(rendered)) = (&self.args.stats, rendered) else {
             return Ok(());
         };
         let stats = Stats {
             adapter: backend.adapter(),
-            technique: &self.shot.technique,
+            technique: self.shot.technique.as_ref(),
             size: self.shot.size,
             layers: &self.layers,
             rendered,
             frames,
-            stages: stages.times(),
+            stages: progress.times(),
             total: self.start.elapsed().as_secs_f64() * 1e3,
             command: std::env::args().collect(),
         };

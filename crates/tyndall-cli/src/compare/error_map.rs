@@ -10,10 +10,10 @@ use crate::picture::Picture;
 pub const FLOOR: f64 = 1e-4;
 /// Powers of ten above the floor.
 const DECADES: f64 = 4.0;
-/// What is no number: a colour of neither map.
+/// Colour of values that are no numbers; neither map has it.
 const BROKEN: [u8; 3] = [0, 255, 0];
 
-/// How a pixel's error is shown.
+/// A scale of colours for a pixel's error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorMap {
     /// mean over channels |a - b| / mean(b), from black (small) over purple to yellow.
@@ -26,7 +26,7 @@ impl ErrorMap {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Magnitude, Self::Signed];
 
-    /// What people call it.
+    /// Its name for people.
     pub fn title(self) -> &'static str {
         match self {
             Self::Magnitude => "Error",
@@ -76,7 +76,7 @@ impl ErrorMap {
         }
     }
 
-    /// Where an error is on the scale.
+    /// Position of an error on the scale.
     fn decade(self, error: f64) -> f64 {
         (error.abs() / FLOOR).log10().clamp(0.0, DECADES) * error.signum()
     }
@@ -87,7 +87,7 @@ impl ErrorMap {
         }
         let (from, to) = (*self.decades().start(), *self.decades().end());
         let t = ((decade - from) / (to - from)) as f32;
-        // ColorBrewer's RdBu the other way round: red is what glows.
+        // ColorBrewer's RdBu reversed: red is what glows.
         let t = if self == Self::Signed { 1.0 - t } else { t };
         let [r, g, b, _] = palette.at(t).to_rgba8();
         [r, g, b]

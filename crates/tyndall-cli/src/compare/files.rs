@@ -2,44 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
-use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
-
 use super::{
-    Comparison, ErrorMap, Report, error_map, html,
-    plot::{self, ErrorKind, PlotError},
+    error::FileError,
+    error_map::{self, ErrorMap},
+    html,
+    plot::{self, ErrorKind},
+    png::png,
+    report::{Comparison, Report},
 };
 use crate::{
     layer::Layer,
     output::{Format, WriteError, write_atomically},
-    picture::{Picture, develop},
+    picture::Picture,
 };
-
-/// Why a comparison could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum FileError {
-    /// A plot or legend could not be drawn.
-    #[error(transparent)]
-    Plot(#[from] PlotError),
-    /// A picture could not be encoded.
-    #[error("cannot encode a picture: {0}")]
-    Encode(#[from] image::ImageError),
-    /// The folder could not be made.
-    #[error("cannot make the folder {}: {cause}", folder.display())]
-    Folder {
-        /// The folder.
-        folder: PathBuf,
-        /// What the system said.
-        cause: std::io::Error,
-    },
-    /// A file could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
 
 /// Makes the folder, and the ones it is in, where they are missing.
 ///
 /// # Errors
-/// Where the system refuses.
+/// [`FileError::Folder`] where the system refuses.
 pub fn make_folder(folder: &Path) -> Result<(), FileError> {
     std::fs::create_dir_all(folder).map_err(|cause| FileError::Folder {
         folder: folder.to_owned(),
@@ -50,7 +30,7 @@ pub fn make_folder(folder: &Path) -> Result<(), FileError> {
 /// Writes everything into the folder, the page last; returns the page's path.
 ///
 /// # Errors
-/// Where a picture cannot be made or the system refuses. No file is ever half written.
+/// [`FileError`] where a picture cannot be made or the system refuses. No file is ever half written.
 pub fn write(comparison: &Comparison, folder: &Path) -> Result<PathBuf, FileError> {
     let Comparison {
         report,
@@ -76,30 +56,13 @@ pub fn write(comparison: &Comparison, folder: &Path) -> Result<PathBuf, FileErro
 /// The numbers as JSON.
 ///
 /// # Errors
-/// Where the system refuses.
+/// [`WriteError`] where the system refuses.
 pub fn write_json(report: &Report, file: &Path) -> Result<(), WriteError> {
     let text = format!("{:#}\n", report.to_json());
     write_atomically(file, text.as_bytes())
 }
 
-/// In-scattered radiance, exposed and tone-mapped.
-pub(super) fn developed(picture: &Picture, ev: f32) -> Result<Vec<u8>, image::ImageError> {
-    png(&develop(picture, ev), picture.size)
-}
-
-/// 8-bit sRGB as a PNG.
-pub(super) fn png(pixels: &[[u8; 3]], size: [u32; 2]) -> Result<Vec<u8>, image::ImageError> {
-    let mut bytes = Vec::new();
-    PngEncoder::new(&mut bytes).write_image(
-        pixels.as_flattened(),
-        size[0],
-        size[1],
-        ExtendedColorType::Rgb8,
-    )?;
-    Ok(bytes)
-}
-
-/// Linear and for people.
+/// A picture as linear values, and as people see it.
 fn write_picture(folder: &Path, stem: &str, picture: &Picture, ev: f32) -> Result<(), FileError> {
     let layers = vec![(Layer::Inscatter, picture.clone())];
     Format::Exr.write(&folder.join(format!("{stem}.exr")), &layers, ev)?;

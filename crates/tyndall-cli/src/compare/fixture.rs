@@ -1,10 +1,10 @@
 //! A comparison made by code, for tests.
 
-use super::{Comparison, Report, Row, Setting, Subject};
+use super::report::{Comparison, Report, Row, Setting, Subject};
 use crate::{
+    backend::AdapterDescription,
     measure::{PictureError, Place, Spread, Timing},
     picture::Picture,
-    render::AdapterDescription,
 };
 
 /// Three settings of one technique.

@@ -3,14 +3,14 @@
 use std::time::SystemTime;
 
 use super::{
-    Comparison, Report, Row, Subject,
+    report::{Comparison, Report, Row, Subject},
     settings::{Candidate, candidate, steps},
 };
 use crate::{
     failure::Failure,
-    measure::{Budget, PictureError, Stage, Visibility, converged, error_of},
+    measure::{Budget, DrawnFrame, PictureError, Visibility, converged, error_of},
     picture::{Picture, automatic_exposure},
-    progress::Stages,
+    progress::Progress,
 };
 
 impl Comparison {
@@ -21,21 +21,21 @@ impl Comparison {
     /// [`Failure::Input`] where no candidate can do the shot, [`Failure::Device`] where the GPU fails.
     pub fn measure(
         mut subject: Subject,
-        stage: &Stage<'_>,
+        drawn: &DrawnFrame<'_>,
         candidates: &[Candidate],
         visibility: Visibility,
-        stages: &mut Stages,
+        progress: &mut Progress,
     ) -> Result<Self, Failure> {
-        let reference = stages.run("reference", |_| stage.reference(visibility))?;
+        let reference = progress.run("reference", |_| drawn.reference(visibility))?;
         let floor = match visibility {
-            Visibility::Traced => floor(stage, &reference, stages)?,
+            Visibility::Traced => floor(drawn, &reference, progress)?,
             Visibility::ShadowMap => None,
         };
         let mut candidates = candidates.to_vec();
-        let pictures = pictures(stage, &mut candidates, &mut subject.left_out, stages)?;
+        let pictures = pictures(drawn, &mut candidates, &mut subject.left_out, progress)?;
         let techniques: Vec<_> = candidates.iter().map(|c| c.technique.clone()).collect();
-        let timings = stages.run("time all, a frame of each in turn", |_| {
-            stage.time(&techniques, &Budget::default())
+        let timings = progress.run("time all, a frame of each in turn", |_| {
+            drawn.time(&techniques, &Budget::default())
         })?;
         let rows = candidates
             .iter()
@@ -47,7 +47,7 @@ impl Comparison {
                     timing: timing.clone(),
                     over_limit: timings.over_limit(timing),
                     errors: error_of(picture, &reference)?,
-                    steps: steps(technique, stage.setup().frame.lights.len()),
+                    steps: steps(technique, drawn.shot_frame().frame.lights.len()),
                 })
             })
             .collect::<Result<_, Failure>>()?;
@@ -71,17 +71,17 @@ impl Comparison {
 
 /// In-scatter of each candidate; those that refuse the shot are taken from the candidates and say why.
 fn pictures(
-    stage: &Stage<'_>,
+    drawn: &DrawnFrame<'_>,
     candidates: &mut Vec<Candidate>,
     left_out: &mut Vec<String>,
-    stages: &mut Stages,
+    progress: &mut Progress,
 ) -> Result<Vec<Picture>, Failure> {
     let mut pictures = Vec::new();
     let mut able = Vec::new();
     let mut refusal = None;
     for candidate in candidates.drain(..) {
         let label = candidate.setting.label();
-        match stages.run(&label, |_| stage.in_scatter(&candidate.technique)) {
+        match progress.run(&label, |_| drawn.in_scatter(&candidate.technique)) {
             Ok(picture) => {
                 pictures.push(picture);
                 able.push(candidate);
@@ -121,16 +121,16 @@ fn exposure(picture: &Picture) -> f32 {
 
 /// Errors of the picture that the shadow maps converge to; `None` where a light has no map.
 fn floor(
-    stage: &Stage<'_>,
+    drawn: &DrawnFrame<'_>,
     reference: &Picture,
-    stages: &mut Stages,
+    progress: &mut Progress,
 ) -> Result<Option<PictureError>, Failure> {
-    let mut lights = stage.setup().frame.lights.iter();
+    let mut lights = drawn.shot_frame().frame.lights.iter();
     if !lights.all(|light| light.shadow.is_some()) {
         return Ok(None);
     }
-    let picture = stages.run("converged shadow map", |_| {
-        stage.reference(Visibility::ShadowMap)
+    let picture = progress.run("converged shadow map", |_| {
+        drawn.reference(Visibility::ShadowMap)
     })?;
     error_of(&picture, reference).map(Some)
 }
@@ -147,7 +147,7 @@ mod tests {
         };
         let shafts: Vec<f32> = (0..100).map(|i| if i < 70 { 0.0 } else { 3.0 }).collect();
         assert!((3.0 * exposure(&picture(&shafts)).exp2() - 0.8).abs() < 1e-5);
-        // What is even needs no such care.
+        // An even picture needs no such care.
         let even = picture(&[0.2; 100]);
         assert_eq!(exposure(&even), automatic_exposure(&even));
         let black = picture(&[0.0; 4]);

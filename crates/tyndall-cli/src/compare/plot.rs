@@ -1,15 +1,21 @@
 //! Plots as SVG: error against time, and the legends of the error pictures.
 
+use std::ops::Range;
+
 use plotters::{
     prelude::{
-        ChartBuilder, Circle, Color, DashedLineSeries, DrawingAreaErrorKind, EmptyElement,
-        IntoDrawingArea, IntoLogRange, IntoTextStyle, LineSeries, PathElement, RGBColor, Rectangle,
-        SVGBackend, SeriesLabelPosition, TRANSPARENT, Text,
+        Cartesian2d, ChartBuilder, ChartContext, Circle, Color, DashedLineSeries,
+        DrawingAreaErrorKind, EmptyElement, IntoDrawingArea, IntoLogRange, IntoTextStyle,
+        LineSeries, LogCoord, PathElement, RGBColor, Rectangle, SVGBackend, SeriesLabelPosition,
+        TRANSPARENT, Text,
     },
     style::text_anchor::{HPos, Pos, VPos},
 };
 
-use super::{ErrorMap, Report, error_map::FLOOR};
+use super::{
+    error_map::{ErrorMap, FLOOR},
+    report::Report,
+};
 use crate::measure::PictureError;
 
 /// Width and height of a plot [pixels].
@@ -25,7 +31,7 @@ const SERIES: &[RGBColor] = &[
     RGBColor(176, 124, 0),
     RGBColor(122, 111, 240),
 ];
-/// What the page recolours in its dark mode.
+/// Colour of lines and text, which the page replaces in its dark mode.
 const INK: RGBColor = RGBColor(0, 0, 0);
 
 /// Why there is no plot.
@@ -41,7 +47,7 @@ impl From<Failed> for PlotError {
     }
 }
 
-/// What is plotted over time.
+/// The error that is plotted over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// relMAE.
@@ -51,7 +57,7 @@ pub enum ErrorKind {
 }
 
 impl ErrorKind {
-    /// What people call it.
+    /// Its name for people.
     pub fn name(self) -> &'static str {
         match self {
             Self::RelMae => "relMAE",
@@ -79,7 +85,7 @@ impl ErrorKind {
 /// axes, whose error or time is zero or infinite, are left out.
 ///
 /// # Errors
-/// Where the plotting library fails.
+/// [`PlotError`] where the plotting library fails.
 pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, PlotError> {
     let series = series(report, kind);
     let points = || series.iter().flat_map(|series| &series.points);
@@ -110,27 +116,10 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
             .y_label_formatter(&number)
             .draw()?;
         if let Some(floor) = floor {
-            let line = [(ends.start, floor), (ends.end, floor)];
-            let style = INK.mix(0.6).stroke_width(1);
-            chart
-                .draw_series(DashedLineSeries::new(line, 6, 4, style))?
-                .label("converged shadow map")
-                .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], INK.mix(0.6)));
+            draw_floor(&mut chart, ends, floor)?;
         }
         for (series, color) in series.iter().zip(SERIES.iter().cycle()) {
-            let positions = || series.points.iter().map(|point| (point.time, point.error));
-            let mark = |position| Circle::new(position, 4, color.filled());
-            chart
-                .draw_series(LineSeries::new(positions(), color.stroke_width(2)))?
-                .label(&series.name)
-                .legend(|(x, y)| Circle::new((x + 8, y), 5, color.filled()));
-            chart.draw_series(positions().map(mark))?;
-            let font = ("sans-serif", 16).into_text_style(&area);
-            let font = font.color(color).pos(Pos::new(HPos::Left, VPos::Bottom));
-            chart.draw_series(series.points.iter().map(|point| {
-                let offset = Text::new(point.label.to_owned(), (7, -3), font.clone());
-                EmptyElement::at((point.time, point.error)) + offset
-            }))?;
+            draw_series(&mut chart, series, *color)?;
         }
         chart
             .configure_series_labels()
@@ -144,10 +133,46 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
     Ok(svg)
 }
 
+/// A chart with logarithmic axes.
+type LogChart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+
+/// A dashed line from end to end at the error of the converged shadow map [percent].
+fn draw_floor(chart: &mut LogChart<'_, '_>, ends: Range<f64>, floor: f64) -> Result<(), Failed> {
+    let line = [(ends.start, floor), (ends.end, floor)];
+    let style = INK.mix(0.6).stroke_width(1);
+    chart
+        .draw_series(DashedLineSeries::new(line, 6, 4, style))?
+        .label("converged shadow map")
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], INK.mix(0.6)));
+    Ok(())
+}
+
+/// A technique's line, its marks and their labels.
+fn draw_series(
+    chart: &mut LogChart<'_, '_>,
+    series: &Series<'_>,
+    color: RGBColor,
+) -> Result<(), Failed> {
+    let positions = || series.points.iter().map(|point| (point.time, point.error));
+    let mark = |position| Circle::new(position, 4, color.filled());
+    chart
+        .draw_series(LineSeries::new(positions(), color.stroke_width(2)))?
+        .label(&series.name)
+        .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
+    chart.draw_series(positions().map(mark))?;
+    let font = ("sans-serif", 16).into_text_style(chart.plotting_area());
+    let font = font.color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
+    chart.draw_series(series.points.iter().map(|point| {
+        let offset = Text::new(point.label.to_owned(), (7, -3), font.clone());
+        EmptyElement::at((point.time, point.error)) + offset
+    }))?;
+    Ok(())
+}
+
 /// The colours of an error picture with their numbers.
 ///
 /// # Errors
-/// Where the plotting library fails.
+/// [`PlotError`] where the plotting library fails.
 pub fn legend(map: ErrorMap) -> Result<String, PlotError> {
     let (from, to) = (*map.decades().start(), *map.decades().end());
     let colors = map.ramp(LEGEND.0 as usize / 2);
@@ -182,7 +207,7 @@ pub fn legend(map: ErrorMap) -> Result<String, PlotError> {
     Ok(svg)
 }
 
-/// What an error picture's decade stands for.
+/// The error that a decade of an error picture stands for.
 fn tick(decade: f64) -> String {
     let percent = 100.0 * FLOOR * 10.0_f64.powf(decade.abs());
     let sign = match decade {
@@ -244,7 +269,7 @@ fn is_placed(value: f64) -> bool {
 }
 
 /// The decades that hold all values, at least one; 1 to 10 where there is none.
-fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
         (low.min(value), high.max(value))
     });

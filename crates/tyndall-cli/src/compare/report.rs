@@ -1,22 +1,33 @@
-//! The numbers of a comparison, as they go into the page and into JSON.
+//! A comparison: its numbers, as they go into the page and into JSON, and its pictures.
 
 use serde_json::{Map, Value, json};
 
 use crate::{
+    backend::AdapterDescription,
     measure::{PictureError, Spread, Timing},
-    render::AdapterDescription,
+    picture::Picture,
 };
+
+/// A report and the pictures that it is about.
+pub struct Comparison {
+    /// The numbers.
+    pub report: Report,
+    /// In-scattered radiance that is taken for true [W/(m^2 sr)].
+    pub reference: Picture,
+    /// In-scattered radiance of each of the report's rows [W/(m^2 sr)].
+    pub pictures: Vec<Picture>,
+}
 
 /// A comparison of techniques on one shot.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// What was compared where.
+    /// Shot, scene and machine.
     pub subject: Subject,
     /// Width and height [pixels].
     pub size: [u32; 2],
     /// When it was measured (UTC, RFC 3339).
     pub date: String,
-    /// What is taken for true.
+    /// The technique that is taken for true.
     pub reference: Setting,
     /// Errors of what the shadow maps converge to, where the reference traces the scene: no technique that reads the maps
     /// can be better but by luck.
@@ -29,7 +40,7 @@ pub struct Report {
     pub rows: Vec<Row>,
 }
 
-/// What was compared where, for people.
+/// Shot, scene and machine of a comparison, for people.
 #[derive(Clone, Debug)]
 pub struct Subject {
     /// The shot's name.
@@ -56,7 +67,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// What people call it: the technique, and what tells it from the technique's other settings.
+    /// Its name for people: the technique, and the parameter that tells it from the technique's other settings.
     pub fn label(&self) -> String {
         match &self.varied {
             Some((key, value)) => format!("{} {key} {value}", self.technique),
@@ -72,12 +83,12 @@ impl Setting {
     }
 }
 
-/// What a technique costs at a setting, and how far it is from the reference.
+/// Costs of a technique at a setting, and its distance from the reference.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The technique and its parameters.
     pub setting: Setting,
-    /// Where it ran, and what that took.
+    /// Its place and times.
     pub timing: Timing,
     /// Its total time as a multiple of the limit's; `None` on the CPU.
     pub over_limit: Option<f64>,

@@ -1,10 +1,10 @@
-//! Which settings of a technique are compared: its own, and those along the parameter that buys quality with time.
+//! Settings of a technique that are compared: its own, and those along the parameter that buys quality with time.
 
 use tyndall::techniques::{Technique, Value};
 
-use super::Setting;
+use super::report::Setting;
 
-/// What buys quality with time, by the parameter's key; a technique is varied along the first that it has.
+/// Parameters that buy quality with time, and their values; a technique is varied along the first that it has.
 const QUALITY: &[(&str, &[i64])] = &[
     ("steps", &[32, 64, 128, 256, 512, 1024]),
     ("samples", &[128, 256, 512, 1024, 2048]),
@@ -19,7 +19,7 @@ const AUTOMATIC: i64 = 0;
 pub struct Candidate {
     /// The technique and its parameters.
     pub technique: Technique,
-    /// The same for people.
+    /// Its name and parameters for people.
     pub setting: Setting,
 }
 

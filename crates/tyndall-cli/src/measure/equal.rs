@@ -11,10 +11,9 @@
 use std::collections::BTreeMap;
 
 use tyndall::techniques::{Technique, ray_march};
-use tyndall_testkit::metrics::PictureError;
 
-use super::{Stage, error_of};
-use crate::{failure::Failure, picture::Picture};
+use super::{DrawnFrame, error_of};
+use crate::{failure::Failure, metrics::PictureError, picture::Picture};
 
 /// The most steps that are tried. Of a local light a software driver may not take so many, which then are never good
 /// enough; see `ray-march`.
@@ -26,7 +25,7 @@ const RESOLUTION: f64 = 0.03;
 /// Step counts through which the line of marching's time is drawn.
 const TIMED_STEPS: [u32; 2] = [8, 64];
 
-/// What brute force needs for the same quality.
+/// The steps of brute force for equal quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EqualQuality {
     /// The step count; [`MAX_STEPS`] where even that is not good enough.
@@ -45,19 +44,19 @@ pub fn ray_march(steps: u32) -> Technique {
     })
 }
 
-/// Marching's errors on one stage, each step count's measured once.
+/// Marching's errors on one drawn frame, each step count's measured once.
 pub struct Marches<'a> {
-    stage: &'a Stage<'a>,
-    /// The converged picture of the stage's shadow maps.
+    drawn: &'a DrawnFrame<'a>,
+    /// The converged picture of the frame's shadow maps.
     truth: &'a Picture,
     known: BTreeMap<u32, PictureError>,
 }
 
 impl<'a> Marches<'a> {
-    /// Nothing measured yet; `truth` is the converged picture of the stage's shadow maps.
-    pub fn new(stage: &'a Stage<'a>, truth: &'a Picture) -> Self {
+    /// Nothing measured yet; `truth` is the converged picture of the frame's shadow maps.
+    pub fn new(drawn: &'a DrawnFrame<'a>, truth: &'a Picture) -> Self {
         Self {
-            stage,
+            drawn,
             truth,
             known: BTreeMap::new(),
         }
@@ -66,7 +65,7 @@ impl<'a> Marches<'a> {
     /// Searches for the fewest steps whose relMAE is at most `target`.
     ///
     /// # Errors
-    /// [`Failure`] where the stage can't march the shot.
+    /// [`Failure`] where the shot can't be marched.
     pub fn equal_quality(&mut self, target: f64) -> Result<EqualQuality, Failure> {
         let search = fewest_steps(|steps| {
             let error = self.error_at(steps)?;
@@ -82,12 +81,12 @@ impl<'a> Marches<'a> {
     /// Marching's errors at a step count.
     ///
     /// # Errors
-    /// [`Failure`] where the stage can't march the shot.
+    /// [`Failure`] where the shot can't be marched.
     pub fn error_at(&mut self, steps: u32) -> Result<PictureError, Failure> {
         if let Some(known) = self.known.get(&steps) {
             return Ok(*known);
         }
-        let error = error_of(&self.stage.in_scatter(&ray_march(steps))?, self.truth)?;
+        let error = error_of(&self.drawn.in_scatter(&ray_march(steps))?, self.truth)?;
         self.known.insert(steps, error);
         Ok(error)
     }

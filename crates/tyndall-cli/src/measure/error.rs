@@ -1,24 +1,17 @@
-//! How far a picture is from the one that is taken for true.
+//! Errors of a picture against the one that is taken for true.
 
-use tyndall_testkit::{
+use crate::{
+    failure::Failure,
     metrics::{self, PictureError},
-    picture,
+    picture::Picture,
 };
-
-use crate::{failure::Failure, picture::Picture};
 
 /// Errors of a picture, relative to the truth's mean: of linear values, over pixels and channels.
 ///
 /// # Errors
 /// [`Failure::Input`] where the pictures have different sizes or there is nothing in them.
 pub fn error_of(picture: &Picture, truth: &Picture) -> Result<PictureError, Failure> {
-    metrics::compare(&in_f64(picture)?, &in_f64(truth)?).map_err(Failure::input)
-}
-
-fn in_f64(picture: &Picture) -> Result<picture::Picture, Failure> {
-    let size = picture.size.map(|side| side as usize);
-    let pixels = picture.pixels.iter().map(|pixel| pixel.map(f64::from));
-    picture::Picture::new(size, pixels.collect()).map_err(Failure::input)
+    metrics::compare(picture, truth).map_err(Failure::input)
 }
 
 #[cfg(test)]

@@ -1,35 +1,25 @@
-//! A sequence's frames by one technique, with several kinds of reuse in turn.
+//! A shot's frames by its techniques, with several kinds of reuse in turn.
 
-use tyndall::{Effect, EffectView, FrameInputs, temporal::Reuse};
-use tyndall_scene::gpu::readback;
+use tyndall::temporal::Reuse;
 
-use super::device::{finish, timed_frame};
 use crate::{
+    backend::Gpu,
     failure::Failure,
+    load::{LoadedShot, ShotFrame},
     render::{
-        Gpu, Needs,
-        gpu::{Timestamps, World, counts, new_effect, target_format},
+        Needs,
+        gpu::{DeviceShot, TimedView, Timestamps, ViewOptions},
     },
-    sequence::Sequence,
 };
 
-/// A sequence on a device.
+/// A shot on a device whose frames are rendered with several kinds of reuse: its takes.
 pub struct Film<'a> {
-    gpu: &'a Gpu,
-    sequence: Sequence,
-    world: World,
-    effect: Effect,
-    takes: Vec<Take>,
+    loaded: LoadedShot,
+    shot: DeviceShot<'a>,
+    takes: Vec<TimedView>,
 }
 
-/// The sequence with one kind of reuse.
-struct Take {
-    reuse: Option<Reuse>,
-    view: EffectView,
-    timestamps: Timestamps,
-}
-
-/// What a frame of a take took.
+/// Cost of a frame of a take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TakeFrame {
     /// Time of the effect's passes, by the device's timestamps; of the wall clock where there are none [ms].
@@ -44,29 +34,23 @@ impl<'a> Film<'a> {
     /// # Errors
     /// [`Failure::Device`] where the GPU fails.
     pub(crate) fn new(
-        mut sequence: Sequence,
+        mut loaded: LoadedShot,
         takes: &[Option<Reuse>],
         gpu: &'a Gpu,
     ) -> Result<Self, Failure> {
-        let setup = sequence.at(sequence.range().first)?;
-        let format = target_format(&gpu.device);
-        let effect = new_effect(&gpu.device, format)?;
+        let first = loaded.frame(loaded.range().first)?;
+        let shot = DeviceShot::new(&first, gpu, Needs::IN_SCATTER)?;
         let take = |reuse: &Option<Reuse>| {
-            let view = effect.create_view(&gpu.device, setup.size);
-            let mut view = view.map_err(Failure::device)?;
-            view.set_reuse(*reuse);
-            Ok(Take {
+            let options = ViewOptions {
                 reuse: *reuse,
-                view,
-                timestamps: Timestamps::new(&gpu.device),
-            })
+                tracks_maps: true,
+            };
+            TimedView::new(&shot, &first, &first.techniques, options)
         };
         Ok(Self {
-            takes: takes.iter().map(take).collect::<Result<_, Failure>>()?,
-            world: World::new(&setup, gpu, Needs::IN_SCATTER, format)?,
-            effect,
-            sequence,
-            gpu,
+            takes: takes.iter().map(take).collect::<Result<_, _>>()?,
+            loaded,
+            shot,
         })
     }
 
@@ -75,45 +59,15 @@ impl<'a> Film<'a> {
     /// # Errors
     /// [`Failure::Input`] where the technique can't do the shot, [`Failure::Device`] where the GPU fails.
     pub fn frame(&mut self, number: u32) -> Result<Vec<TakeFrame>, Failure> {
-        let (gpu, setup) = (self.gpu, self.sequence.at(number)?);
-        let Gpu { device, queue, .. } = gpu;
-        self.world.place(&setup, gpu, Needs::IN_SCATTER)?;
-        let mut encoder = device.create_command_encoder(&Default::default());
-        self.world.draw_light_maps(&setup, &mut encoder, None);
-        self.world.draw_g_buffer(&setup, &mut encoder, None);
-        finish(gpu, encoder, &Timestamps::none())?;
-        let (world, effect) = (&self.world, &self.effect);
-        let pixels = f64::from(setup.size[0]) * f64::from(setup.size[1]);
-        let frame = |take: &mut Take| {
-            let occluders = world.occluders(&setup, take.reuse.as_ref(), gpu)?;
-            let inputs = FrameInputs {
-                depth: world.g_buffer().depth_view(),
-                lights: &world.light_inputs(occluders.as_deref()),
-            };
-            let view = &mut take.view;
-            let time = timed_frame(gpu, &mut take.timestamps, |encoder, timestamps| {
-                effect
-                    .prepare(
-                        device,
-                        queue,
-                        view,
-                        &inputs,
-                        &setup.frame,
-                        &setup.techniques,
-                    )
-                    .map_err(Failure::input)?;
-                effect.record(encoder, view, timestamps.timer());
-                Ok(())
-            })?;
-            let counts = counts(view, device, queue)?;
-            let stale = counts.iter().filter(|(name, _)| name.starts_with("stale"));
-            let stale: Vec<f64> = stale.map(|(_, count)| *count as f64 / pixels).collect();
+        let shot_frame = self.loaded.frame(number)?;
+        self.shot
+            .draw_and_wait(&shot_frame, &mut Timestamps::none())?;
+        let shot = &self.shot;
+        let frame = |take: &mut TimedView| {
+            let time = take.frame(shot, &shot_frame)?;
             Ok(TakeFrame {
                 milliseconds: time.total(),
-                computed: match stale.len() {
-                    0 => 1.0,
-                    lights => stale.iter().sum::<f64>() / lights as f64,
-                },
+                computed: computed(&take.view.counts(shot.gpu)?, &shot_frame),
             })
         };
         self.takes.iter_mut().map(frame).collect()
@@ -124,11 +78,18 @@ impl<'a> Film<'a> {
     /// # Errors
     /// [`Failure::Device`] where the device is lost.
     pub fn outputs(&self) -> Result<Vec<Vec<f32>>, Failure> {
-        let Gpu { device, queue, .. } = self.gpu;
-        let output = |take: &Take| {
-            let output = take.view.output().texture();
-            readback::texture_f32(device, queue, output).map_err(Failure::device)
-        };
-        self.takes.iter().map(output).collect()
+        let takes = self.takes.iter();
+        takes.map(|take| take.view.output(self.shot.gpu)).collect()
+    }
+}
+
+/// Share of the pixels that were stale, the mean of the lights; all where nothing counts them.
+fn computed(counts: &[(String, u64)], shot_frame: &ShotFrame) -> f64 {
+    let pixels = f64::from(shot_frame.size[0]) * f64::from(shot_frame.size[1]);
+    let stale = counts.iter().filter(|(name, _)| name.starts_with("stale"));
+    let stale: Vec<f64> = stale.map(|(_, count)| *count as f64 / pixels).collect();
+    match stale.len() {
+        0 => 1.0,
+        lights => stale.iter().sum::<f64>() / lights as f64,
     }
 }

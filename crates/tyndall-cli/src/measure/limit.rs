@@ -120,8 +120,9 @@ mod tests {
 
     use super::*;
     use crate::{
-        measure::tests::{gpu_or_skip, setup},
-        render::{Backend, Needs, gpu::target_format},
+        backend::Backend,
+        measure::tests::{gpu_or_skip, shot_frame},
+        render::{Needs, gpu::DeviceShot},
     };
 
     #[test]
@@ -129,18 +130,16 @@ mod tests {
         let Some(Backend::Gpu(gpu)) = gpu_or_skip("the limit") else {
             return;
         };
-        let setup = setup();
-        let format = target_format(&gpu.device);
-        let world = World::new(&setup, &gpu, Needs::IN_SCATTER, format).unwrap();
-        let limit = Limit::new(&gpu.device, &world);
+        let shot_frame = shot_frame();
+        let shot = DeviceShot::new(&shot_frame, &gpu, Needs::IN_SCATTER).unwrap();
+        let limit = Limit::new(&gpu.device, &shot.world);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        world.draw_light_maps(&setup, &mut encoder, None);
-        world.draw_g_buffer(&setup, &mut encoder, None);
+        shot.draw(&shot_frame, &mut encoder, None);
         limit.record(&mut encoder, None);
         gpu.queue.submit([encoder.finish()]);
         let output = readback::texture_f32(&gpu.device, &gpu.queue, limit.output.texture());
         let output = output.unwrap();
-        let read = world.read(&gpu).unwrap();
+        let read = shot.world.read(&gpu).unwrap();
         let map = &read.lights[0].shadow_map.as_ref().unwrap().depth;
         let sum = |values: &[f32]| values.iter().copied().map(f64::from).sum::<f64>();
         let (found, expected) = (sum(&output) / 4.0, sum(&read.depth) + sum(map));

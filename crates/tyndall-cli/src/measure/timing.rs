@@ -1,19 +1,20 @@
-//! What a frame takes: many frames, those of different techniques in turn, and their median and quartiles.
+//! Times of a frame: of many frames, those of different techniques in turn, the median and quartiles.
 
 use std::time::{Duration, Instant};
 
 use tyndall::techniques::Technique;
 
-use super::stage::Place;
+use super::place::Place;
+use crate::render::gpu::FrameTime;
 
-/// How many frames are timed.
+/// Numbers of frames that are timed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Timed frames of each technique (>= 1).
     pub frames: usize,
     /// Frames of each before the clock starts.
     pub warm_up: usize,
-    /// What a technique's frames may take together. Past it, it gets no more frames than [`Budget::FEWEST`];
+    /// Time that a technique's frames may take together. Past it, it gets no more frames than [`Budget::FEWEST`];
     /// past three times that, a single one must do.
     pub time: Duration,
 }
@@ -45,7 +46,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of one value a frame, in any order, linear between ranks; zero of none.
+    /// Takes one value a frame, in any order; linear between ranks; zero without values.
     pub fn of(values: &[f64]) -> Self {
         let mut sorted = values.to_vec();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -63,12 +64,12 @@ impl Spread {
     }
 }
 
-/// What the frames of one technique, or of the limit, took.
+/// Times of the frames of one technique, or of the limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// Where it ran.
+    /// The place it ran in.
     pub place: Place,
-    /// How many frames were timed.
+    /// Number of frames that were timed.
     pub frames: usize,
     /// Wall-clock time of a frame, from its preparation until the device is done [ms].
     pub wall: Spread,
@@ -125,36 +126,6 @@ impl Timings {
     pub fn over_limit(&self, timing: &Timing) -> Option<f64> {
         let limit = self.limit.as_ref()?.total().median;
         (timing.place == Place::Gpu).then(|| timing.total().median / limit)
-    }
-}
-
-/// What one frame took [ms].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct FrameTime {
-    pub(super) wall: f64,
-    pub(super) passes: Vec<(String, f64)>,
-}
-
-impl FrameTime {
-    /// Time of all passes, or of the wall clock where none were timed.
-    pub(super) fn total(&self) -> f64 {
-        if self.passes.is_empty() {
-            self.wall
-        } else {
-            self.gpu()
-        }
-    }
-
-    fn gpu(&self) -> f64 {
-        self.passes
-            .iter()
-            .map(|(_, milliseconds)| milliseconds)
-            .sum()
-    }
-
-    fn pass(&self, name: &str) -> f64 {
-        let of_name = self.passes.iter().filter(|pass| pass.0 == name);
-        of_name.map(|(_, milliseconds)| milliseconds).sum()
     }
 }
 

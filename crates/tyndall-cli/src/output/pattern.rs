@@ -29,7 +29,7 @@ impl Pattern {
     /// Finds the run of `#`, or the `%d` or `%04d`, in the name of `file`.
     ///
     /// # Errors
-    /// Where there is none, or more than one.
+    /// [`PatternError`] where there is none, or more than one.
     pub fn of(file: &Path) -> Result<Self, PatternError> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let places = places(&name);
@@ -56,7 +56,7 @@ impl Pattern {
     /// The frames whose files there are, in any order.
     ///
     /// # Errors
-    /// Where the folder cannot be read.
+    /// [`io::Error`] where the folder cannot be read.
     pub fn numbers(&self) -> io::Result<Vec<u32>> {
         let here = Path::new(".");
         let is_here = self.folder.as_os_str().is_empty();

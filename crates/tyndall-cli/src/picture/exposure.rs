@@ -1,12 +1,12 @@
 //! Automatic exposure: scenes range over five orders of magnitude and more.
 
-use super::{Picture, luminance};
+use super::linear::{Picture, luminance};
 
-/// Where the mean of the middle tones goes: middle grey (Reinhard et al. 2002, "Photographic Tone Reproduction").
+/// Target of the middle tones' mean: middle grey (Reinhard et al. 2002, "Photographic Tone Reproduction").
 const KEY: f32 = 0.18;
 /// The share of pixels, from the brightest down, that may be clipped nearly to white (lamps, windows).
 const HIGHLIGHT_SHARE: f32 = 0.03;
-/// How bright the rest may get after exposure: the tone mapper shows 2.5 as 0.97.
+/// Largest brightness of the rest after exposure: the tone mapper shows 2.5 as 0.97.
 const HIGHLIGHT: f32 = 2.5;
 /// Pixels darker than this fraction of the highlight count as that dark: black holes don't brighten the picture.
 const FLOOR: f32 = 1e-3;

@@ -1,11 +1,11 @@
 //! The Khronos PBR Neutral tone mapper (Khronos Group 2024, specification "Khronos PBR Neutral Tone Mapper"):
 //! colours below the knee keep hue and saturation, highlights roll off towards white.
 
-/// Where compression starts, after the Fresnel offset.
+/// Start of compression, after the Fresnel offset.
 const KNEE: f32 = 0.8 - FRESNEL;
 /// Reflectance at normal incidence that is taken out, so that base colours come out as they were painted.
 const FRESNEL: f32 = 0.04;
-/// How fast highlights lose their colour.
+/// Rate at which highlights lose their colour.
 const DESATURATION: f32 = 0.15;
 
 /// Maps linear RGB of any range into [0, 1). Negative values and NaN are taken as zero.

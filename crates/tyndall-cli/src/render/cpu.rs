@@ -1,156 +1,83 @@
-//! The pipeline on the CPU: what the GPU rasterises is traced, with nothing installed.
+//! Rendering on the CPU: what the GPU rasterises is traced, with nothing installed.
 
 use tyndall::{
-    cpu::{CpuInputs, CpuLightInputs, GlassMap, Progress, ShadowMap},
-    frame::{Frame, Light},
-    techniques::TechniqueChoice,
+    cpu::{CpuInputs, CpuLightInputs},
+    techniques::{Backends, TechniqueChoice},
 };
-use tyndall_scene::{shading::shade, trace::GLASS_LAYERS};
+use tyndall_scene::shading::shade;
 
-use super::{Needs, Rendered, depth_layer, distances, rgb, transmittances};
-use crate::{failure::Failure, layer::Layer, picture::Picture, progress::Stages, setup::Setup};
+use super::{
+    buffers::LightMaps,
+    layers::{Rendered, depth_layer, distances, rgb, transmittances},
+    needs::Needs,
+};
+use crate::{
+    failure::Failure, layer::Layer, load::ShotFrame, picture::Picture, progress::Progress,
+};
 
 pub(super) fn render(
-    setup: &Setup,
+    shot_frame: &ShotFrame,
     needs: Needs,
     layers: &[Layer],
-    stages: &mut Stages,
+    progress: &mut Progress,
 ) -> Result<Rendered, Failure> {
-    let (camera, size) = (&setup.frame.camera, setup.size);
-    let g_buffer = stages.run("trace G-buffer", |progress| {
-        setup.tracer.g_buffer(camera, size, progress)
+    let (camera, size) = (&shot_frame.frame.camera, shot_frame.size);
+    let g_buffer = progress.run("trace G-buffer", |report| {
+        shot_frame.tracer.g_buffer(camera, size, report)
     });
-    let maps = LightMaps::trace_all(setup, needs, stages);
-    let lights = light_inputs(setup, &maps);
+    let maps = LightMaps::trace_all(shot_frame, needs, progress);
+    let lights = light_inputs(shot_frame, &maps);
     let in_scatter = if needs.in_scatter {
-        let name = format!(
-            "in-scatter by {}",
-            super::technique(&setup.techniques).info().name
-        );
-        stages.run(&name, |progress| {
-            in_scatter(
-                setup,
-                setup.frame.clone(),
-                &g_buffer.depth,
-                &lights,
-                &setup.techniques,
-                progress,
-            )
+        let name = format!("in-scatter by {}", names(shot_frame));
+        progress.run(&name, |report| {
+            let techniques = &shot_frame.techniques;
+            in_scatter(shot_frame, techniques, &g_buffer.depth, &lights, report)
         })?
     } else {
         Vec::new()
     };
     let surface = if needs.surface {
-        stages.run("shade surfaces", |_| {
-            shade(&g_buffer, &setup.frame, &lights, Some(&**setup.tracer))
+        progress.run("shade surfaces", |_| {
+            shade(
+                &g_buffer,
+                &shot_frame.frame,
+                &lights,
+                Some(&**shot_frame.tracer),
+            )
         })
     } else {
         Vec::new()
     };
-    let pixels = |layer| match layer {
-        Layer::Inscatter => in_scatter.clone(),
-        Layer::Surface => surface.clone(),
-        Layer::Final => composite(setup, &g_buffer.depth, &surface, &in_scatter),
-        Layer::Depth | Layer::Transmittance => depth_layer(layer, setup, &g_buffer.depth).pixels,
-    };
-    let picture = |layer| Picture {
-        size,
-        pixels: pixels(layer),
+    let picture = |layer| {
+        let pixels = match layer {
+            Layer::Inscatter => in_scatter.clone(),
+            Layer::Surface => surface.clone(),
+            Layer::Final => composite(shot_frame, &g_buffer.depth, &surface, &in_scatter),
+            Layer::Depth | Layer::Transmittance => {
+                return depth_layer(layer, shot_frame, &g_buffer.depth);
+            }
+        };
+        Picture { size, pixels }
     };
     Ok(Rendered {
         layers: layers
             .iter()
             .map(|&layer| (layer, picture(layer)))
             .collect(),
+        techniques: shot_frame.techniques_on(Backends::Cpu),
         passes: Vec::new(),
         bytes: vec![("light maps", maps.iter().map(LightMaps::bytes).sum())],
         counts: Vec::new(),
     })
 }
 
-/// The pictures that in-scattered light is computed from.
-pub(crate) struct Buffers {
-    /// What a depth buffer holds, in the camera's convention.
-    pub(crate) depth: Vec<f32>,
-    /// One a light.
-    pub(crate) lights: Vec<LightMaps>,
-}
-
-impl Buffers {
-    /// Casts the rays of the camera and of every light.
-    pub(crate) fn trace(setup: &Setup, stages: &mut Stages) -> Self {
-        Self {
-            depth: stages.run("trace depth", |progress| depth(setup, progress)),
-            lights: LightMaps::trace_all(setup, Needs::IN_SCATTER, stages),
-        }
-    }
-}
-
-/// What a depth buffer holds, by the rays of the camera.
-pub(crate) fn depth(setup: &Setup, progress: Progress<'_>) -> Vec<f32> {
-    let g_buffer = setup
-        .tracer
-        .g_buffer(&setup.frame.camera, setup.size, progress);
-    g_buffer.depth
-}
-
-/// What a light sees; nothing where nobody asks.
-#[derive(Default)]
-pub(crate) struct LightMaps {
-    pub(crate) shadow_map: Option<ShadowMap>,
-    pub(crate) glass: Option<GlassMap>,
-}
-
-impl LightMaps {
-    fn trace_all(setup: &Setup, needs: Needs, stages: &mut Stages) -> Vec<Self> {
-        let lights = setup.frame.lights.iter().zip(&setup.lights).enumerate();
-        lights
-            .map(|(index, (light, extra))| {
-                if needs.light_maps {
-                    Self::trace(setup, index, light, extra.map_size, stages)
-                } else {
-                    Self::default()
-                }
-            })
-            .collect()
-    }
-
-    fn trace(
-        setup: &Setup,
-        index: usize,
-        light: &Light,
-        size: [u32; 2],
-        stages: &mut Stages,
-    ) -> Self {
-        let Some(projection) = &light.shadow else {
-            return Self::default();
-        };
-        let (tracer, emitter) = (&setup.tracer, &light.emitter);
-        let shadow_map = stages.run(&format!("trace shadow map {index}"), |progress| {
-            tracer.shadow_map(emitter, projection, size, progress)
-        });
-        let glass = tracer.has_tinted_glass().then(|| {
-            stages.run(&format!("trace glass map {index}"), |progress| {
-                tracer.glass_map(emitter, projection, size, GLASS_LAYERS, progress)
-            })
-        });
-        Self {
-            shadow_map: Some(shadow_map),
-            glass: glass.flatten(),
-        }
-    }
-
-    fn bytes(&self) -> u64 {
-        let depth = self.shadow_map.as_ref().map(|map| map.depth.as_slice());
-        let glass = self.glass.as_ref().map(|map| map.texels.as_slice());
-        (depth.map_or(0, size_of_val) + glass.map_or(0, size_of_val)) as u64
-    }
-}
-
-/// The lights' pictures, as tyndall takes them.
-pub(crate) fn light_inputs<'a>(setup: &'a Setup, maps: &'a [LightMaps]) -> Vec<CpuLightInputs<'a>> {
+/// The lights' inputs, as the library takes them.
+pub(crate) fn light_inputs<'a>(
+    shot_frame: &'a ShotFrame,
+    maps: &'a [LightMaps],
+) -> Vec<CpuLightInputs<'a>> {
     maps.iter()
-        .zip(&setup.lights)
+        .zip(&shot_frame.lights)
         .map(|(maps, light)| CpuLightInputs {
             shadow_map: maps.shadow_map.as_ref(),
             glass: maps.glass.as_ref(),
@@ -159,37 +86,48 @@ pub(crate) fn light_inputs<'a>(setup: &'a Setup, maps: &'a [LightMaps]) -> Vec<C
         .collect()
 }
 
-/// In-scattered light of a frame of the setup [W/(m^2 sr)]. A light whose map isn't among `lights` promises none.
+/// In-scattered light [W/(m^2 sr)]. A light whose map isn't among `lights` promises none.
 pub(crate) fn in_scatter(
-    setup: &Setup,
-    mut frame: Frame,
+    shot_frame: &ShotFrame,
+    techniques: &TechniqueChoice,
     depth: &[f32],
     lights: &[CpuLightInputs<'_>],
-    techniques: &TechniqueChoice,
-    progress: Progress<'_>,
+    report: tyndall::cpu::Progress<'_>,
 ) -> Result<Vec<[f32; 3]>, Failure> {
+    let mut frame = shot_frame.frame.clone();
     for (light, inputs) in frame.lights.iter_mut().zip(lights) {
         light.shadow = light.shadow.filter(|_| inputs.shadow_map.is_some());
     }
     let inputs = CpuInputs {
-        size: setup.size,
+        size: shot_frame.size,
         depth,
         lights,
-        occluders: Some(&**setup.tracer),
+        occluders: Some(&**shot_frame.tracer),
     };
-    let result = tyndall::cpu::render(&frame, &inputs, techniques, progress);
+    let result = tyndall::cpu::render(&frame, &inputs, techniques, report);
     Ok(rgb(&result.map_err(Failure::input)?.pixels))
+}
+
+/// Names of the lights' techniques, each once.
+fn names(shot_frame: &ShotFrame) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for technique in shot_frame.techniques_on(Backends::Cpu) {
+        if !names.contains(&technique.info().name) {
+            names.push(technique.info().name);
+        }
+    }
+    names.join(" and ")
 }
 
 /// surface * transmittance + in-scatter, in double precision.
 fn composite(
-    setup: &Setup,
+    shot_frame: &ShotFrame,
     depth: &[f32],
     surface: &[[f32; 3]],
     in_scatter: &[[f32; 3]],
 ) -> Vec<[f32; 3]> {
-    let distances = distances(&setup.frame.camera, setup.size, depth);
-    let transmittance = transmittances(&setup.frame.medium, &distances);
+    let distances = distances(&shot_frame.frame.camera, shot_frame.size, depth);
+    let transmittance = transmittances(&shot_frame.frame.medium, &distances);
     let pixels = surface.iter().zip(&transmittance).zip(in_scatter);
     pixels
         .map(|((surface, transmittance), in_scatter)| {

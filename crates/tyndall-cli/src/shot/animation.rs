@@ -13,15 +13,15 @@ use super::{
 pub struct Temporal {
     /// Frames that a value is reused for (>= 1); `None`: any number.
     pub reuse: Option<u32>,
-    /// How pixels are found that have to be computed again.
+    /// The search for pixels that have to be computed again.
     pub mask: TemporalMask,
     /// Relative error that pixels may be kept with while the camera moves (0 < x <= 1); `None`: none are kept then.
     pub reproject: Option<f32>,
-    /// What the in-scattered light of the picture shows.
+    /// Content of the picture's in-scattered light.
     pub show: TemporalShow,
 }
 
-/// How pixels are found that have to be computed again.
+/// The search for pixels that have to be computed again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TemporalMask {
     /// From what changed in depth buffer and shadow maps.
@@ -30,18 +30,18 @@ pub enum TemporalMask {
     Geometry,
 }
 
-/// What the in-scattered light of the picture shows.
+/// Content of the picture's in-scattered light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TemporalShow {
     /// The light.
     Light,
     /// The pixels that were computed.
     Mask,
-    /// How long ago each pixel was.
+    /// Frames since each pixel was computed.
     Age,
 }
 
-/// What moves, frame by frame.
+/// Movement, frame by frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Animation {
     /// Frames a second (> 0).
@@ -66,9 +66,9 @@ impl Default for Animation {
 /// A movement; keyframes are spread evenly over the frame range, with straight lines between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
-    /// What moves.
+    /// The thing that moves.
     pub target: MoveTarget,
-    /// Where the shot names it.
+    /// The place where the shot names the thing.
     pub location: Location,
     /// Offsets from where it stands [m].
     pub translate: Vec<[f32; 3]>,
@@ -78,14 +78,14 @@ pub struct Move {
     pub density: Vec<f32>,
 }
 
-/// What a [`Move`] moves.
+/// The target of a [`Move`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MoveTarget {
     /// Every node of this name, along its parent's axes.
     Node(String),
     /// The camera, along the world's axes.
     Camera,
-    /// The light of this index, with its picture, along the world's axes.
+    /// The light of this index, with its texture, along the world's axes.
     Light(usize),
     /// The medium, which fills all space and can only change its density.
     Medium,
@@ -106,7 +106,7 @@ impl FrameRange {
         self.first..=self.last
     }
 
-    /// How far into the range a frame is, from 0 at the first to 1 at the last; frames outside are taken to its ends.
+    /// Position of a frame in the range, from 0 at the first to 1 at the last; frames outside are taken to its ends.
     pub fn progress(self, frame: u32) -> f32 {
         let done = f64::from(frame.clamp(self.first, self.last) - self.first);
         (done / f64::from((self.last - self.first).max(1))) as f32

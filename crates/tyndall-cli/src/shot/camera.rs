@@ -8,10 +8,10 @@ use super::{
     reader::{Field, Section},
 };
 
-/// What a shot says of its camera; what it leaves out comes from [`CameraBase`].
+/// A shot's keys about its camera; the rest comes from [`CameraBase`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraSpec {
-    /// Where the rest comes from.
+    /// Source of everything that is left out.
     pub base: CameraBase,
     /// World-space position of the eye [m].
     pub eye: Option<[f32; 3]>,
@@ -25,11 +25,11 @@ pub struct CameraSpec {
     pub near: Option<f32>,
     /// View depth of the far plane [m].
     pub far: Option<f32>,
-    /// Where the shot speaks of it.
+    /// The place where the shot speaks of it.
     pub location: Location,
 }
 
-/// What a camera is before the shot's keys change it.
+/// A camera before the shot's keys change it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraBase {
     /// Nothing: the shot says where its eye and target are.
@@ -40,7 +40,7 @@ pub enum CameraBase {
     Scene,
 }
 
-/// What a scene offers to a shot that leaves something of its camera out.
+/// A scene's offers to a shot that leaves something of its camera out.
 pub(crate) struct SceneCameras<'a> {
     /// Cameras by the names of their nodes.
     pub(crate) named: &'a [(String, Camera)],

@@ -1,4 +1,4 @@
-//! What is wrong with a shot: where, what was expected and what was found.
+//! Errors in shots: their place, and what was expected and found there.
 
 use std::{fmt, path::PathBuf};
 
@@ -6,9 +6,9 @@ use std::{fmt, path::PathBuf};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{location}: {problem}")]
 pub struct ShotError {
-    /// Where it is.
+    /// Its place.
     pub location: Location,
-    /// What it is.
+    /// The mistake itself.
     pub problem: Box<Problem>,
 }
 
@@ -22,18 +22,18 @@ impl ShotError {
     }
 }
 
-/// Where a value was written.
+/// The place where a value was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
     /// The shot or scene file.
     pub file: PathBuf,
-    /// What was written there.
+    /// Line or command line.
     pub origin: Origin,
-    /// The dotted path of the key, e.g. `light.0.direction`; empty for the whole file.
+    /// The dotted path of the key, e.g. `light.0.direction`; empty for all of the file.
     pub path: String,
 }
 
-/// Who wrote a value.
+/// The writer of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// This line of the file, counted from 1.
@@ -44,7 +44,7 @@ pub enum Origin {
     File,
 }
 
-/// What is wrong.
+/// A kind of mistake.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Problem {
     /// Not TOML.
@@ -56,15 +56,15 @@ pub enum Problem {
     /// A value of the wrong type or out of range.
     #[error("expected {expected}, found {found}")]
     Value {
-        /// What it may be.
+        /// Values that it may have.
         expected: String,
-        /// What it is.
+        /// The value it has.
         found: String,
     },
     /// A key that has to be there isn't.
     #[error("is missing: expected {expected}")]
     Missing {
-        /// What it may be.
+        /// Values that it may have.
         expected: String,
     },
     /// A key that nobody knows.
@@ -78,7 +78,7 @@ pub enum Problem {
     /// A name of something that isn't there.
     #[error("no {kind} is called {found:?}: expected {expected}{}", suggestion(.similar))]
     UnknownName {
-        /// What it should be the name of.
+        /// Kind of the thing that is named.
         kind: &'static str,
         /// The name.
         found: String,

@@ -1,4 +1,4 @@
-//! `[[light]]`: what shines, the size of its shadow map, and the picture it shines through.
+//! `[[light]]`: an emitter, the size of its shadow map, the texture it shines through, and its own technique.
 
 use std::{
     f32::consts::FRAC_PI_2,
@@ -7,39 +7,45 @@ use std::{
 };
 
 use glam::Vec3;
-use tyndall::frame::{Emitter, TexturePlacement};
+use tyndall::{
+    frame::{Emitter, LightKind, TexturePlacement},
+    techniques::Technique,
+};
 
 use super::{
     error::{Location, Problem, ShotError},
     reader::{Field, Section},
+    technique,
     tree::{Entry, Value},
 };
 
 /// A light of a shot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightSpec {
-    /// What shines.
+    /// Kind, place and strength.
     pub emitter: Emitter,
     /// Texels of a side of its shadow map, of a face of its cube map, or of a map of each of a rectangle's samples.
     pub shadow_map: u32,
-    /// The picture it shines through.
+    /// The texture it shines through.
     pub texture: Option<TextureSpec>,
+    /// Its own technique; `None`: the shot's.
+    pub technique: Option<Technique>,
 }
 
-/// The picture a light shines through.
+/// The texture a light shines through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureSpec {
     /// The picture file, or the pattern of one a frame (`####` or `%04d`).
     pub file: PathBuf,
-    /// Where the shot names it.
+    /// The place where the shot names it.
     pub location: Location,
-    /// Where it lies.
+    /// Its position in space.
     pub placement: TexturePlacement,
 }
 
 /// Texels of a side of a shadow map that a shot leaves to us: directional and spot lights.
 const DEFAULT_MAP: u32 = 2048;
-/// The same for a face of a point light's cube and for each sample of a rectangular light.
+/// Default texels of a side of a point light's cube face, and of the map of each sample of a rectangular light.
 const DEFAULT_FACE: u32 = 1024;
 const DEFAULT_RECT: u32 = 128;
 /// The most texels a shadow map's side may have.
@@ -48,7 +54,7 @@ const MAX_SAMPLES: u32 = 1024;
 const DEFAULT_SAMPLES: u32 = 256;
 
 const KINDS: [&str; 4] = ["directional", "point", "spot", "rect"];
-const COMMON: [&str; 3] = ["type", "shadow_map", "texture"];
+const COMMON: [&str; 4] = ["type", "shadow_map", "texture", "technique"];
 /// Sine of the smallest angle between a texture's `up` and the axis it turns about, or between a parallelogram's edges.
 const LEAST_SINE: f32 = 1e-4;
 
@@ -80,6 +86,10 @@ fn read(field: &Field<'_>, folder: &Path) -> Result<LightSpec, ShotError> {
         texture: section
             .get("texture")
             .map(|field| texture(&field, &emitter, folder))
+            .transpose()?,
+        technique: section
+            .get("technique")
+            .map(|field| technique::read_own(&field, LightKind::of(&emitter)))
             .transpose()?,
     })
 }
@@ -181,15 +191,15 @@ fn texture(field: &Field<'_>, emitter: &Emitter, folder: &Path) -> Result<Textur
             TexturePlacement::Rectangle
         }
     };
-    let file = section.require("file", PICTURE)?;
+    let file = section.require("file", TEXTURE_FILE)?;
     Ok(TextureSpec {
-        file: folder.join(file.text(PICTURE)?),
+        file: folder.join(file.text(TEXTURE_FILE)?),
         location: file.location(),
         placement,
     })
 }
 
-const PICTURE: &str = "the path of a .png, .jpg or .exr picture";
+const TEXTURE_FILE: &str = "the path of a .png, .jpg or .exr picture";
 
 fn parallelogram(section: &Section<'_>, light: [f32; 3]) -> Result<TexturePlacement, ShotError> {
     section.only(&["file", "center", "edge_x", "edge_y"])?;

@@ -1,6 +1,9 @@
 //! `[medium]`: what fills space.
 
-use tyndall::frame::{Medium, MediumComponent, Phase};
+use tyndall::{
+    frame::{Medium, MediumComponent, Phase},
+    phase::{MAX_PARAMS, TABLE},
+};
 
 use super::{
     error::{Problem, ShotError, one_of},
@@ -9,7 +12,6 @@ use super::{
 };
 
 const COMPONENT_KEYS: [&str; 3] = ["sigma_s", "sigma_a", "phase"];
-const PHASES: [&str; 3] = ["isotropic", "rayleigh", "hg"];
 
 /// Reads `[medium]`: one component, or a list of them.
 pub(super) fn read(field: &Field<'_>) -> Result<Medium, ShotError> {
@@ -41,27 +43,31 @@ fn component(section: &Section<'_>) -> Result<MediumComponent, ShotError> {
     Ok(MediumComponent {
         sigma_s: section.color("sigma_s")?,
         sigma_a: section.color("sigma_a")?,
-        phase: phase(&section.require("phase", "a table with kind = isotropic, rayleigh or hg")?)?,
+        phase: phase(&section.require("phase", "a table with the kind of a phase function")?)?,
     })
 }
 
 fn phase(field: &Field<'_>) -> Result<Phase, ShotError> {
     let section = field.section()?;
-    let expected = one_of(&PHASES);
+    let names: Vec<&str> = TABLE.iter().map(|info| info.name).collect();
+    let expected = one_of(&names);
     let kind = section.require("kind", &expected)?;
-    match kind.text(&expected)? {
-        "hg" => {
-            section.only(&["kind", "g"])?;
-            let expected = "a number above -1 and below 1";
-            let g = section
-                .require("g", expected)?
-                .real(expected, |g| g.abs() < 1.0)?;
-            Ok(Phase::HenyeyGreenstein { g })
-        }
-        "isotropic" => section.only(&["kind"]).map(|()| Phase::Isotropic),
-        "rayleigh" => section.only(&["kind"]).map(|()| Phase::Rayleigh),
-        other => Err(kind.error(Problem::unknown_name("phase function", other, &PHASES))),
+    let name = kind.text(&expected)?;
+    let unknown = || kind.error(Problem::unknown_name("phase function", name, &names));
+    let info = TABLE.iter().find(|info| info.name == name);
+    let params = info.ok_or_else(unknown)?.params;
+    let keys: Vec<&str> = ["kind"]
+        .into_iter()
+        .chain(params.iter().map(|param| param.key))
+        .collect();
+    section.only(&keys)?;
+    let mut values = [0.0; MAX_PARAMS];
+    for (value, param) in values.iter_mut().zip(params) {
+        *value = section
+            .require(param.key, param.range)?
+            .real(param.range, param.allows)?;
     }
+    Phase::from_name(name, values).ok_or_else(unknown)
 }
 
 /// A medium as a shot would write it, for `--set` to change.
@@ -87,11 +93,9 @@ fn component_value(component: &MediumComponent) -> Value {
 }
 
 fn phase_value(phase: Phase) -> Value {
-    match phase {
-        Phase::Isotropic => Value::scene_table([("kind", "isotropic".into())]),
-        Phase::Rayleigh => Value::scene_table([("kind", "rayleigh".into())]),
-        Phase::HenyeyGreenstein { g } => {
-            Value::scene_table([("kind", "hg".into()), ("g", g.into())])
-        }
-    }
+    let kind = ("kind", phase.info().name.into());
+    let params = phase
+        .params()
+        .map(|(param, value)| (param.key, value.into()));
+    Value::scene_table([kind].into_iter().chain(params))
 }

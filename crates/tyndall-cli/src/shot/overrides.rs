@@ -46,7 +46,21 @@ impl Override {
         self.keys.len() > 1 && self.keys[0] == section
     }
 
-    /// Puts the value in its place. Tables on the way that aren't there are made, items of lists are not.
+    /// The name of a technique, where this gives one to a light.
+    pub(super) fn light_technique(&self) -> Option<&str> {
+        let keys: Vec<&str> = self.keys.iter().map(String::as_str).collect();
+        let name = match (&keys[..], &self.value) {
+            (["light", _, "technique", "name"], name) => name,
+            (["light", _, "technique"], Value::Table(table)) => &table.get("name")?.value,
+            _ => return None,
+        };
+        match name {
+            Value::Text(name) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// Puts the value in its place. Tables of its path that aren't there are made, items of lists are not.
     pub(super) fn apply(&self, file: &Path, root: &mut Table) -> Result<(), ShotError> {
         let mut keys = self.keys.iter();
         let Some(first) = keys.next() else {

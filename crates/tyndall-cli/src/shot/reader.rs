@@ -7,7 +7,7 @@ use super::{
     tree::{Entry, Place, Table, Value},
 };
 
-/// A table of the shot and the way to it.
+/// A table of the shot and its path.
 #[derive(Clone)]
 pub(super) struct Section<'a> {
     file: &'a Path,
@@ -16,7 +16,7 @@ pub(super) struct Section<'a> {
     table: &'a Table,
 }
 
-/// A value of the shot and the way to it.
+/// A value of the shot and its path.
 #[derive(Clone)]
 pub(super) struct Field<'a> {
     file: &'a Path,
@@ -45,7 +45,7 @@ fn join(path: &str, key: impl fmt::Display) -> String {
 }
 
 impl<'a> Section<'a> {
-    /// The whole file.
+    /// The top level of the file.
     pub(super) fn root(file: &'a Path, table: &'a Table) -> Self {
         Self {
             file,

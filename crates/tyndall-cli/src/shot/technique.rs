@@ -1,12 +1,13 @@
-//! `[technique]`: how the integral is computed.
+//! `[technique]`, and a light's own: the technique that computes the integral.
 
-use tyndall::frame::LightKind;
-use tyndall::techniques::{self, ParamError, TABLE, Technique};
+use tyndall::{
+    frame::LightKind,
+    techniques::{self, ParamError, TABLE, Technique},
+};
 
 use super::{
-    LightSpec,
     error::{Problem, ShotError, one_of, similar},
-    reader::{Field, Section},
+    reader::Field,
     tree::{Entry, Place, Table, Value},
 };
 
@@ -38,25 +39,31 @@ pub(super) fn replace(root: &mut Table, name: &str) {
     root.insert("technique".to_owned(), table);
 }
 
-/// Reads `[technique]`; where it names none, the first that can do these lights.
-pub(super) fn read(
-    field: Option<&Field<'_>>,
-    lights: &[LightSpec],
-) -> Result<Technique, ShotError> {
-    let section = field.map(Field::section).transpose()?;
-    let name = section.as_ref().and_then(|section| section.get("name"));
-    let mut technique = match &name {
+/// Reads `[technique]`; where it names none, its parameters are those of the first that can do lights of these kinds.
+pub(super) fn read(field: &Field<'_>, kinds: &[LightKind]) -> Result<Technique, ShotError> {
+    let section = field.section()?;
+    let mut technique = match &section.get("name") {
         Some(field) => named(field)?,
-        None => {
-            let kinds: Vec<_> = lights.iter().map(|l| LightKind::of(&l.emitter)).collect();
-            Technique::default_for(&kinds)
-        }
+        None => Technique::default_for(kinds),
     };
-    let parameters = section.iter().flat_map(Section::fields);
-    for (key, field) in parameters.filter(|(key, _)| *key != "name") {
+    for (key, field) in section.fields().filter(|(key, _)| *key != "name") {
         set(&mut technique, key, &field)?;
     }
     Ok(technique)
+}
+
+/// Reads a light's own technique, which has to be able to do lights of this kind.
+pub(super) fn read_own(field: &Field<'_>, kind: LightKind) -> Result<Technique, ShotError> {
+    let technique = read(field, &[kind])?;
+    if technique.info().lights.contains(&kind) {
+        return Ok(technique);
+    }
+    let able = TABLE.iter().filter(|info| info.lights.contains(&kind));
+    let able: Vec<&str> = able.map(|info| info.name).collect();
+    let section = field.section()?;
+    let name = section.require("name", &one_of(&able))?;
+    let (kind, able) = (kind.name(), one_of(&able));
+    Err(name.unexpected(format!("a technique that does {kind} lights: {able}")))
 }
 
 fn named(field: &Field<'_>) -> Result<Technique, ShotError> {

@@ -1,10 +1,13 @@
 //! Shots that are read, and shots that are refused with the right words.
 
-use std::path::{Path, PathBuf};
+use std::{
+    ffi::OsStr,
+    path::{Path, PathBuf},
+};
 
 use tyndall::{
     frame::{Camera, Emitter, Medium, MediumComponent, Phase, Projection, TexturePlacement},
-    techniques::Value,
+    techniques::{Technique, Value},
 };
 
 use super::*;
@@ -104,7 +107,10 @@ fn a_whole_shot_is_read() {
             }],
         })
     );
-    assert_eq!(parameter(&shot.technique, "steps"), Value::Integer(77));
+    assert_eq!(
+        parameter(shot.technique.as_ref().unwrap(), "steps"),
+        Value::Integer(77)
+    );
 }
 
 fn parameter(technique: &Technique, key: &str) -> Value {
@@ -118,7 +124,7 @@ fn what_may_be_left_out_may() {
     assert_eq!(shot.scene, SceneSource::Builtin("church".into()));
     assert_eq!(shot.camera.base, CameraBase::Scene);
     assert_eq!((shot.lights, shot.medium), (None, None));
-    assert_eq!(shot.technique, Technique::default());
+    assert_eq!(shot.technique, None);
 }
 
 #[test]
@@ -352,7 +358,7 @@ fn every_mistake_names_line_key_expected_and_found() {
         (
             "\"directional\"",
             "\"point\"",
-            "shot.toml:11: light.0.direction: no such key: expected type, shadow_map, texture, position or intensity",
+            "shot.toml:11: light.0.direction: no such key: expected type, shadow_map, texture, technique, position or intensity",
         ),
         (
             "direction = [-0.5, -1.0, -0.2]",
@@ -437,7 +443,22 @@ fn every_mistake_names_line_key_expected_and_found() {
         (
             "\"hg\"",
             "\"mie\"",
-            "shot.toml:27: medium.phase.kind: no phase function is called \"mie\": expected isotropic, rayleigh or hg",
+            "shot.toml:27: medium.phase.kind: no phase function is called \"mie\": expected isotropic, rayleigh, hg, cornette-shanks or draine",
+        ),
+        (
+            "\"hg\"",
+            "\"draine\"",
+            "shot.toml:27: medium.phase.alpha: is missing: expected a finite number >= 0",
+        ),
+        (
+            "{ kind = \"hg\", g = 0.4 }",
+            "{ kind = \"draine\", g = 0.4, alpha = -1 }",
+            "shot.toml:27: medium.phase.alpha: expected a finite number >= 0, found -1",
+        ),
+        (
+            "{ kind = \"hg\", g = 0.4 }",
+            "{ kind = \"cornette-shanks\", g = 0.4, alpha = 1 }",
+            "shot.toml:27: medium.phase.alpha: no such key: expected kind or g",
         ),
         (
             "phase = {",
@@ -498,6 +519,24 @@ fn a_rect_or_texture_without_area_is_refused() {
 }
 
 #[test]
+fn every_phase_function_is_read_and_written() {
+    let folder = Folder::new();
+    for info in tyndall::phase::TABLE {
+        let params = info.params.iter().zip(["0.25", "0.5"]);
+        let keys: String = params
+            .map(|(p, value)| format!(", {} = {value}", p.key))
+            .collect();
+        let table = format!("{{ kind = \"{}\"{keys} }}", info.name);
+        let source = shot_with("{ kind = \"hg\", g = 0.4 }", &table);
+        let medium = folder.load(&source, None, &[]).unwrap().medium.unwrap();
+        let expected = Phase::from_name(info.name, [0.25, 0.5]).unwrap();
+        assert_eq!(medium.components[0].phase, expected);
+        let again = scene_shot(&["medium.sigma_a=[0,0,0]"]).scene_medium(&medium);
+        assert_eq!(again.unwrap().components[0].phase, expected);
+    }
+}
+
+#[test]
 fn overrides_take_the_place_of_the_file() {
     let folder = Folder::new();
     let sets = [
@@ -515,7 +554,10 @@ fn overrides_take_the_place_of_the_file() {
     let component = shot.medium.unwrap().components[0];
     assert_eq!(component.sigma_s, [0.1; 3]);
     assert_eq!(component.phase, Phase::HenyeyGreenstein { g: -0.5 });
-    assert_eq!(parameter(&shot.technique, "steps"), Value::Integer(2048));
+    assert_eq!(
+        parameter(shot.technique.as_ref().unwrap(), "steps"),
+        Value::Integer(2048)
+    );
     assert_eq!(shot.camera.up, Some([0.0, 0.0, 1.0]));
     assert_eq!(shot.scene, SceneSource::Builtin("slats".into()));
     for (set, message) in [
@@ -548,9 +590,12 @@ fn overrides_take_the_place_of_the_file() {
 fn the_technique_of_the_command_line_drops_foreign_parameters() {
     let folder = Folder::new();
     let same = folder.load(SHOT, Some("ray-march"), &[]).unwrap();
-    assert_eq!(parameter(&same.technique, "steps"), Value::Integer(77));
+    assert_eq!(
+        parameter(same.technique.as_ref().unwrap(), "steps"),
+        Value::Integer(77)
+    );
     let other = folder.load(SHOT, Some("reference"), &["technique.tolerance=0.01"]);
-    let technique = other.unwrap().technique;
+    let technique = other.unwrap().technique.unwrap();
     assert_eq!(technique.info().name, "reference");
     assert_eq!(parameter(&technique, "tolerance"), Value::Real(0.01));
     let error = folder
@@ -560,6 +605,100 @@ fn the_technique_of_the_command_line_drops_foreign_parameters() {
         error,
         "--set technique.steps: no such key: expected tolerance or visibility"
     );
+}
+
+/// [`SHOT`] whose spot light has a technique of its own, on line 21.
+fn shot_of_own(technique: &str) -> String {
+    let line = format!("shadow_map = 512\ntechnique = {technique}");
+    shot_with("shadow_map = 512", &line)
+}
+
+/// Names of the lights' own techniques.
+fn own_names(shot: &Shot) -> Vec<Option<&str>> {
+    let lights = shot.lights.iter().flatten();
+    let own = lights.map(|light| light.technique.as_ref());
+    own.map(|own| own.map(|technique| technique.info().name))
+        .collect()
+}
+
+#[test]
+fn a_light_may_have_its_own_technique() {
+    let folder = Folder::new();
+    let source = shot_of_own("{ name = \"vsv\", resolution = 64 }");
+    let shot = folder.load(&source, None, &[]).unwrap();
+    assert_eq!(own_names(&shot), [None, Some("vsv")]);
+    let own = shot.lights.as_ref().unwrap()[1].technique.as_ref().unwrap();
+    assert_eq!(parameter(own, "resolution"), Value::Integer(64));
+    let all = shot.technique.as_ref().unwrap();
+    assert_eq!(parameter(all, "steps"), Value::Integer(77));
+    let named: Vec<_> = shot.named_techniques().iter().map(|i| i.name).collect();
+    assert_eq!(named, ["ray-march", "vsv"]);
+
+    // The command line's technique is that of all lights that have none of their own.
+    let other = folder.load(&source, Some("reference"), &[]).unwrap();
+    assert_eq!(other.technique.as_ref().unwrap().info().name, "reference");
+    assert_eq!(own_names(&other), [None, Some("vsv")]);
+    let sets = [
+        "light.0.technique.name=min-max",
+        "light.1.technique.resolution=128",
+    ];
+    let set = folder.load(&source, None, &sets).unwrap();
+    assert_eq!(own_names(&set), [Some("min-max"), Some("vsv")]);
+    let own = set.lights.as_ref().unwrap()[1].technique.as_ref().unwrap();
+    assert_eq!(parameter(own, "resolution"), Value::Integer(128));
+
+    // Parameters without a name are those of the first that can do the light.
+    let nameless = folder.load(&shot_of_own("{ samples = 99 }"), None, &[]);
+    assert_eq!(own_names(&nameless.unwrap()), [None, Some("min-max")]);
+}
+
+#[test]
+fn a_wrong_technique_of_a_light_names_its_line_and_key() {
+    for (technique, message) in [
+        (
+            "{ name = \"vsvv\" }",
+            "shot.toml:21: light.1.technique.name: no technique is called \"vsvv\": expected ",
+        ),
+        (
+            "{ name = \"vsv\", steps = 3 }",
+            "shot.toml:21: light.1.technique.steps: no such key: expected resolution",
+        ),
+        (
+            "{ name = \"vsv\", resolution = 0 }",
+            "shot.toml:21: light.1.technique.resolution: expected 64, 128, 256, 512 or 1024, found 0",
+        ),
+        (
+            "\"vsv\"",
+            "shot.toml:21: light.1.technique: expected a table, found \"vsv\"",
+        ),
+        (
+            "{ name = \"ivsv\" }",
+            "shot.toml:21: light.1.technique.name: expected a technique that does spot lights: min-max, ",
+        ),
+    ] {
+        let found = read(&shot_of_own(technique)).expect_err(technique);
+        assert!(found.starts_with(message), "{technique}: {found}");
+    }
+    let set = "light.1.technique.name=ivsv";
+    let found = Folder::new().load(SHOT, None, &[set]).unwrap_err();
+    let message = "--set light.1.technique.name: expected a technique that does spot lights: ";
+    assert!(found.starts_with(message), "{found}");
+}
+
+#[test]
+fn lights_of_the_scene_may_have_their_own_technique() {
+    let shot = scene_shot(&["light.1.technique.name=vsv"]);
+    let named: Vec<_> = shot.named_techniques().iter().map(|i| i.name).collect();
+    assert_eq!(named, ["vsv"]);
+    let lamp = Emitter::Point {
+        position: [1.0; 3],
+        intensity: [5.0; 3],
+    };
+    let lights = shot.scene_lights(&[lamp, lamp]).unwrap();
+    assert_eq!(lights[0].technique, None);
+    assert_eq!(lights[1].technique, Technique::from_name("vsv"));
+    let table = scene_shot(&["light.0.technique={name='hybrid'}"]);
+    assert_eq!(table.named_techniques()[0].name, "hybrid");
 }
 
 fn scene_shot(sets: &[&str]) -> Shot {

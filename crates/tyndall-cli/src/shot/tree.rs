@@ -14,7 +14,7 @@ pub(super) struct Entry {
     pub(super) place: Place,
 }
 
-/// Where a value comes from.
+/// A value's origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// A line of the shot file, counted from 1.
@@ -148,7 +148,7 @@ impl Entry {
 
 impl Value {
     /// A table of values that the scene gives.
-    pub(super) fn scene_table<const N: usize>(fields: [(&str, Self); N]) -> Self {
+    pub(super) fn scene_table<'a>(fields: impl IntoIterator<Item = (&'a str, Self)>) -> Self {
         Self::Table(
             fields
                 .into_iter()

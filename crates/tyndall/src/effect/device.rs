@@ -5,7 +5,11 @@ use super::{
     view::EffectView,
 };
 use crate::{
-    gpu::{PassTimer, pool::Pool, scope::Shared},
+    gpu::{
+        PassTimer,
+        pool::{Owner, Pool},
+        scope::Shared,
+    },
     passes::composite::Composite,
 };
 
@@ -20,7 +24,7 @@ impl Effect {
     /// prepared, and kept.
     ///
     /// # Errors
-    /// Where the device cannot blend the target format.
+    /// Fails if the device cannot blend the target format.
     pub fn new(device: &wgpu::Device, options: &EffectOptions) -> Result<Self, CreateError> {
         let format = options.target_format;
         let features = format.guaranteed_format_features(device.features());
@@ -40,7 +44,7 @@ impl Effect {
     /// Makes the textures of a camera of this size [pixels].
     ///
     /// # Errors
-    /// Where the size is zero or beyond the device's textures.
+    /// Fails if the size is zero or beyond the device's textures.
     pub fn create_view(
         &self,
         device: &wgpu::Device,
@@ -85,6 +89,6 @@ impl Effect {
         which: usize,
     ) -> wgpu::TextureView {
         let name = ["in-scatter, even", "in-scatter, odd"][which];
-        pool.attachment(device, (None, name), size, self.shared.output)
+        pool.attachment(device, (Owner::View, name), size, self.shared.output)
     }
 }

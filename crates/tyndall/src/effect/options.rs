@@ -1,6 +1,6 @@
-//! What an effect is created with, and why it may not be.
+//! Options that an effect is created with, and the errors of its creation.
 
-/// What is fixed for the life of an [`Effect`].
+/// Options that are fixed for the life of an [`Effect`].
 #[derive(Clone, Copy, Debug)]
 pub struct EffectOptions {
     /// Format of the colour target that [`Effect::composite`] draws on; must be blendable.
@@ -12,7 +12,7 @@ pub struct EffectOptions {
 /// Format of the in-scattered light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutputPrecision {
-    /// `Rgba16Float`, for pictures.
+    /// `Rgba16Float`, for images.
     Half,
     /// `Rgba32Float`, for measuring.
     Full,
@@ -27,14 +27,14 @@ impl OutputPrecision {
     }
 }
 
-/// Why an effect or a view of it could not be made.
+/// An effect or a view of it could not be created.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CreateError {
-    /// The picture is empty or larger than the device's textures.
+    /// The view is empty or larger than the device's textures.
     #[error("a view must be 1 to {limit} pixels a side, found {} x {}", size[0], size[1])]
     Size {
-        /// What was asked for [pixels].
+        /// The size asked for [pixels].
         size: [u32; 2],
         /// The device's limit [pixels].
         limit: u32,
@@ -42,7 +42,7 @@ pub enum CreateError {
     /// The device cannot blend the target's format.
     #[error("the target format must be blendable on this device, found {format:?}")]
     NotBlendable {
-        /// What was asked for.
+        /// The format asked for.
         format: wgpu::TextureFormat,
     },
 }

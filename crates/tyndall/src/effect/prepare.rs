@@ -7,6 +7,7 @@ use crate::{
     frame::{Emitter, Frame, Light},
     gpu::{
         pass::LightPasses,
+        pool::Owner,
         scope::{LightScope, Shared},
         uniforms::{FrameUniform, LightUniform},
     },
@@ -33,14 +34,19 @@ fn black<'a>(techniques: &TechniqueChoice) -> PlannedLight<'a> {
         shadow: None,
         texture: None,
     };
+    let technique = techniques.of(0, &light, Backends::Gpu);
     PlannedLight {
         light,
         inputs: LightInputs::default(),
-        technique: techniques.of(0, &light, Backends::Gpu),
+        technique: if technique.info().can(light.kind(), Backends::Gpu) {
+            technique
+        } else {
+            Technique::default()
+        },
     }
 }
 
-/// What the passes of a frame's lights share.
+/// Resources that the passes of a frame's lights share.
 struct FrameParts<'a> {
     device: &'a wgpu::Device,
     queue: &'a wgpu::Queue,
@@ -61,10 +67,10 @@ impl FrameParts<'_> {
 }
 
 impl Effect {
-    /// All that can fail: checks the frame and its inputs, and uploads what the passes read.
+    /// Checks the frame and its inputs, and uploads what the passes read. All that can fail is done here.
     ///
     /// # Errors
-    /// Where the frame or an input is out of range, missing or of the wrong kind, or a light's technique cannot do it on
+    /// Fails if the frame or an input is out of range, missing or of the wrong kind, or a light's technique cannot do it on
     /// the GPU. The view then still holds the frame that was prepared before.
     pub fn prepare(
         &self,
@@ -123,7 +129,8 @@ impl Effect {
         } = planned;
         let method = technique.gpu()?;
         let (uniform, variant) = LightUniform::new(light, parts.rays.eye, inputs.glass.is_some());
-        let key = (Some(index), "light");
+        let variant = variant.within(&frame.medium);
+        let key = (Owner::Light(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);
         let group = |lights_before| parts.group(&self.shared, lights_before);
         let light_group = self
@@ -223,7 +230,9 @@ fn begin<'a>(
     view.passes.clear();
     view.counts.clear();
     view.visibilities.clear();
-    let uniform = view.pool.uniform(device, queue, (None, "frame"), &uniform);
+    let uniform = view
+        .pool
+        .uniform(device, queue, (Owner::View, "frame"), &uniform);
     let airlight = effect.bindings.airlight(device, queue, frame);
     FrameParts {
         device,

@@ -1,4 +1,4 @@
-//! What one camera needs from frame to frame.
+//! The view of one camera, kept from frame to frame.
 
 use crate::{
     gpu::{pass::Pass, pool::Pool},
@@ -6,7 +6,7 @@ use crate::{
     temporal::{History, Reuse},
 };
 
-/// What one camera needs: textures of its size, buffers, and the frame that was prepared last.
+/// The view of one camera: textures of its size, buffers, and the frame that was prepared last.
 pub struct EffectView {
     pub(super) size: [u32; 2],
     pub(super) pool: Pool,
@@ -17,7 +17,7 @@ pub struct EffectView {
     pub(super) surface_shadows: Option<SurfaceShadows>,
     /// One entry a light of the frame prepared last.
     pub(super) visibilities: Vec<Option<wgpu::TextureView>>,
-    /// Whether the frame prepared last was recorded.
+    /// True once the frame prepared last was recorded.
     pub(super) is_recorded: bool,
     pub(super) output: wgpu::TextureView,
     pub(super) composite: Option<wgpu::BindGroup>,
@@ -46,7 +46,7 @@ impl EffectView {
         &self.output
     }
 
-    /// What is kept of earlier frames from now on; `None`, as at first: nothing.
+    /// Sets what is kept of earlier frames from now on; `None`, as at first: nothing.
     pub fn set_reuse(&mut self, reuse: Option<Reuse>) {
         self.reuse = reuse;
     }
@@ -57,12 +57,12 @@ impl EffectView {
         self.surface_shadows = shadows;
     }
 
-    /// How much of a light (its index in the frame) reaches the surface that each pixel sees, of the frame recorded last:
+    /// Visibility of a light (by its index in the frame) from the surface that each pixel sees, of the frame recorded last:
     /// `Rgba16Float`, of the view's size, 0 to 1 in each of rgb, 1 in a; 1 where no light would arrive. It is the mean over
-    /// the light's samples, weighed by what each would send there: its share of the light's picture, the emitter's cosine,
-    /// 1 / d^2, extinction on the way, and the surface's cosine where [`SurfaceShadows::normals`] are given. So the irradiance
-    /// of a shadowed surface is that of the unshadowed one, times this. What a pixel without a surface holds is that of the
-    /// end of its ray on the far plane.
+    /// the light's samples, weighted by what each would send there: its share of the light's texture, the emitter's cosine,
+    /// 1 / d^2, extinction in between, and the surface's cosine where [`SurfaceShadows::normals`] are given. The irradiance
+    /// of a shadowed surface is that of the unshadowed one, times this. Pixels without a surface hold the visibility from
+    /// the end of their ray on the far plane.
     ///
     /// `None` where [`EffectView::set_surface_shadows`] did not ask for it, where there is no such light, and with any
     /// technique but `ivsv`, whose voxels it is read from. The view may be another one after each `prepare`.
@@ -81,7 +81,7 @@ impl EffectView {
         self.size
     }
 
-    /// What the frame prepared last counts, light by light.
+    /// The counts of the frame prepared last, light by light.
     pub fn counts(&self) -> &[Count] {
         &self.counts
     }

@@ -21,7 +21,7 @@ impl EpipolarFrame {
     /// `None` where the eye is at the light: there is no axis.
     pub fn new(eye: DVec3, light: LightSource) -> Option<Self> {
         let (axis, distance) = match light {
-            LightSource::Direction(way) => (-DVec3::from(way), None),
+            LightSource::Direction(direction) => (-DVec3::from(direction), None),
             LightSource::Position(position) => {
                 let to_light = DVec3::from(position) - eye;
                 (to_light.try_normalize()?, Some(to_light.length()))
@@ -76,7 +76,8 @@ impl EpipolarFrame {
         }
     }
 
-    /// The light ray of a slice: a point on it, and the way it travels. Of the sun, the point beside the eye.
+    /// The light ray of a slice: a point on it, and the direction in which it travels. For the sun, the point beside the
+    /// eye.
     pub fn light_ray(&self, alpha: f64, gamma: f64) -> (DVec3, DVec3) {
         let outward = self.outward(alpha);
         match self.distance {
@@ -143,10 +144,10 @@ mod tests {
             let s = 0.01 + 6.0 * f64::from(x[6] + 1.0);
             let gamma = frame.gamma(beta, s);
             // The light ray gamma passes through the point, and meets the view ray at s.
-            let (origin, way) = frame.light_ray(alpha, gamma);
+            let (origin, travel) = frame.light_ray(alpha, gamma);
             let point = eye + s * direction;
-            let along = (point - origin).dot(way);
-            assert!((origin + along * way - point).length() < 1e-9);
+            let along = (point - origin).dot(travel);
+            assert!((origin + along * travel - point).length() < 1e-9);
             assert!((frame.crossing(beta, gamma) / s - 1.0).abs() < 1e-6);
             // Light that ends before the point leaves it dark, light that ends behind it does not.
             let end = if local {

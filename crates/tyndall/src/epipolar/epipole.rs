@@ -1,19 +1,17 @@
-//! Where the epipolar lines of a picture meet, and where they leave it.
+//! The point where the epipolar lines of an image meet, and the part of its border where they leave it.
 
 use glam::{DVec2, DVec3};
 
 use crate::{camera::CameraRays, frame::Emitter, physics::reals};
 
-/// A light nearer to the eye than this [m] has no place of its own on the picture.
+/// A light nearer to the eye than this [m] has no place of its own on the image.
 const LEAST_DISTANCE: f64 = 1e-6;
-/// Lines begin and end this far outside the picture [pixels]; as in `screen.wgsl`.
-const MARGIN: f64 = 1.0;
 
-/// The point of the picture that all epipolar lines pass through, and the axis that all slices contain.
+/// The point of the image that all epipolar lines pass through, and the axis that all slices contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Epipole {
-    /// Homogeneous place on the picture [pixels], z >= 0; with z = 0 the lines are parallel. Of an epipole behind the
-    /// camera it is the place opposite. Its largest component, in units of the picture, is 1.
+    /// Homogeneous place on the image [pixels], z >= 0; with z = 0 the lines are parallel. An epipole behind the
+    /// camera has the place opposite. Its largest component, in units of the image, is 1.
     pub(crate) place: DVec3,
     /// Unit direction of the line through eye and light (orthographic: of the view rays), towards the light.
     pub(crate) axis: DVec3,
@@ -22,9 +20,10 @@ pub(crate) struct Epipole {
 }
 
 impl Epipole {
-    /// Of a light that is not a rectangle. Where it has no place of its own (the eye is at the light, or the sun shines along
-    /// the rays of an orthographic camera) every bundle of lines will do: they meet in the middle.
-    pub(crate) fn new(camera: &CameraRays, size: [u32; 2], emitter: &Emitter) -> Self {
+    /// The epipole of a light that is not a rectangle, of lines that begin and end `margin` [pixels] outside the image.
+    /// A light without a place of its own (the eye is at the light, or the sun shines along the rays of an orthographic
+    /// camera) may take any bundle of lines: they meet in the middle.
+    pub(crate) fn new(camera: &CameraRays, size: [u32; 2], emitter: &Emitter, margin: f64) -> Self {
         let (to_light, w) = match *emitter {
             Emitter::Directional { direction, .. } => (-reals(direction).normalize_or_zero(), 0.0),
             Emitter::Point { position, .. } | Emitter::Spot { position, .. } => {
@@ -53,14 +52,14 @@ impl Epipole {
         Self {
             place,
             axis,
-            arc: arc(size, place),
+            arc: arc(size, place, margin),
         }
     }
 }
 
 /// The point of the border at a parameter in [0, 1): counter-clockwise from the top left corner, a quarter a side
 /// (Yusov 2012, section 6.1).
-fn exit(size: DVec2, border: f64) -> DVec2 {
+fn exit(size: DVec2, border: f64, margin: f64) -> DVec2 {
     let side = (4.0 * border).floor().clamp(0.0, 3.0);
     let along = 4.0 * border - side;
     let place = match side as u32 {
@@ -69,23 +68,23 @@ fn exit(size: DVec2, border: f64) -> DVec2 {
         2 => DVec2::new(1.0, 1.0 - along),
         _ => DVec2::new(1.0 - along, 0.0),
     };
-    place * (size + 2.0 * MARGIN) - MARGIN
+    place * (size + 2.0 * margin) - margin
 }
 
-/// The part of the border that lies behind the picture as seen from the epipole: from the corner on one side to that on the
-/// other; all of it where the epipole is on the picture.
-fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
+/// The part of the border that lies behind the image as seen from the epipole: from the corner on one side to that on the
+/// other; all of it where the epipole is on the image.
+fn arc(size: DVec2, epipole: DVec3, margin: f64) -> [f64; 2] {
     let away = |p: DVec2| p * epipole.z - epipole.truncate();
     let inside = |p: DVec2| {
-        epipole.z > 0.0 && p.cmpge(DVec2::splat(-MARGIN)).all() && p.cmple(size + MARGIN).all()
+        epipole.z > 0.0 && p.cmpge(DVec2::splat(-margin)).all() && p.cmple(size + margin).all()
     };
     if inside(epipole.truncate() / epipole.z) {
         return [0.0, 1.0];
     }
     let middle = away(0.5 * size);
     let corners = [0.0, 0.25, 0.5, 0.75].map(|border| {
-        // The angle between the ways to the middle and to the corner; in parallel lines their order is left.
-        let corner = exit(size, border);
+        // The angle between the directions to the middle and to the corner; in parallel lines their order is left.
+        let corner = exit(size, border, margin);
         let across = epipole.z.max(1e-9) * middle.perp_dot(corner - 0.5 * size);
         (across.atan2(middle.dot(away(corner))), border)
     });
@@ -100,7 +99,8 @@ fn arc(size: DVec2, epipole: DVec3) -> [f64; 2] {
     let between = |from: f64, to: f64| [from, (to - from).rem_euclid(1.0)];
     let [near, far] = [between(first.1, last.1), between(last.1, first.1)];
     let distance = |[start, length]: [f64; 2]| {
-        middle.dot(away(exit(size, (start + 0.5 * length).rem_euclid(1.0))))
+        let border = (start + 0.5 * length).rem_euclid(1.0);
+        middle.dot(away(exit(size, border, margin)))
     };
     if distance(near) > distance(far) {
         near
@@ -118,13 +118,17 @@ mod tests {
 
     const SIZE: [u32; 2] = [320, 200];
 
+    fn margin() -> f64 {
+        crate::shader::constant("SCREEN_MARGIN_PIXELS").into()
+    }
+
     fn camera() -> CameraRays {
         let target = [0.3, -0.2, -1.0];
         let camera = Camera::perspective([0.0; 3], target, [0.0, 1.0, 0.0], 1.1, 1.6, 0.1, 9.0);
         CameraRays::new(&camera, SIZE)
     }
 
-    /// Places of the epipole on the picture [pixels], behind the camera where z < 0: on it, at its rim, in and beside a
+    /// Places of the epipole on the image [pixels], behind the camera where z < 0: on it, at its rim, in and beside a
     /// corner, off each side, far away, at infinity.
     fn epipoles() -> Vec<DVec3> {
         let [w, h] = SIZE.map(f64::from);
@@ -158,7 +162,7 @@ mod tests {
         place / scale * if place.z < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// The sun and a lamp towards a point of the picture have their epipole there, or opposite where they are behind.
+    /// The sun and a lamp towards a point of the image have their epipole there, or opposite where they are behind.
     #[test]
     fn an_epipole_is_where_the_light_is_seen() {
         let camera = camera();
@@ -175,7 +179,7 @@ mod tests {
                     intensity: [1.0; 3],
                 };
                 for emitter in [sun, lamp] {
-                    let found = Epipole::new(&camera, SIZE, &emitter);
+                    let found = Epipole::new(&camera, SIZE, &emitter, margin());
                     let place = found.place.truncate() / found.place.z;
                     // f32 directions: measured 4.3e-5 pixels.
                     assert!(
@@ -196,7 +200,7 @@ mod tests {
             intensity: [1.0; 3],
         };
         let camera = camera();
-        let found = Epipole::new(&camera, SIZE, &lamp);
+        let found = Epipole::new(&camera, SIZE, &lamp, margin());
         assert_eq!((found.place, found.axis), (middle, camera.forward));
         let mut flat = Camera::perspective(
             [0.0; 3],
@@ -217,7 +221,7 @@ mod tests {
             direction: [0.0, 0.0, -1.0],
             illuminance: [1.0; 3],
         };
-        let found = Epipole::new(&CameraRays::new(&flat, SIZE), SIZE, &along);
+        let found = Epipole::new(&CameraRays::new(&flat, SIZE), SIZE, &along, margin());
         assert_eq!(found.place, middle);
     }
 
@@ -231,7 +235,7 @@ mod tests {
         let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
         let samples = 64;
         for epipole in epipoles().into_iter().map(normalized) {
-            let [start, length] = arc(size, epipole);
+            let [start, length] = arc(size, epipole, margin());
             let [ex, ey, ez] = epipole.as_vec3().to_array();
             let pixels = in_box(9, 500, [0.5..=319.5, 0.5..=199.5]);
             let inputs: Vec<[f32; 7]> = pixels
@@ -272,7 +276,7 @@ import tyndall::passes::epipolar::screen::{
                 let [x, y, dx, dy] = lines[i].map(f64::from);
                 let (entry, step) = (DVec2::new(x, y), DVec2::new(dx, dy));
                 let place = entry + f64::from(sample[i][0]) * step;
-                // Measured 2.2e-3, of an epipole 9e5 pixels away; 1e-3 on the picture.
+                // Measured 2.2e-3, of an epipole 9e5 pixels away; 1e-3 on the image.
                 assert!(
                     (place - pixel).length() < 5e-3,
                     "{epipole} {pixel}: {place}"

@@ -36,7 +36,7 @@ impl Axis {
         self.start + i as f64 * self.step
     }
 
-    /// Sample before a place, and how far it lies on the way to the next.
+    /// Sample before a place, and its distance from that, in samples.
     fn cell(self, x: f64) -> (usize, f64) {
         let place = (x - self.start) / self.step.max(f64::MIN_POSITIVE);
         let place = place.clamp(0.0, (GRID - 1) as f64);

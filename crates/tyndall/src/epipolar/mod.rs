@@ -5,14 +5,15 @@
 //! `gamma` the light ray: its distance from the axis [m] (sun), or its angle at the light from the axis [rad].
 //! With half-planes neither beta nor gamma changes sign.
 
-pub(crate) mod cells;
 mod coordinates;
 #[cfg(feature = "gpu")]
 pub(crate) mod epipole;
 pub(crate) mod grid;
 pub(crate) mod low_rank;
+pub(crate) mod rectify;
 mod resolution;
 pub(crate) mod slices;
+pub(crate) mod traverse;
 pub(crate) mod tree;
 
 pub use coordinates::EpipolarFrame;

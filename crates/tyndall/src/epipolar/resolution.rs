@@ -1,9 +1,9 @@
-//! How finely epipolar coordinates are sampled.
+//! Sampling of epipolar coordinates.
 
 /// Slices that are taken where the half-pixel rule asks for more: leaves are exact, so that more only cost time.
 pub(super) const DEFAULT_SLICES: usize = 1024;
 
-/// How finely slices are taken; zeros choose by the picture and the map.
+/// Numbers of slices and samples; zeros choose by the image and the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
     /// Slices (0 to 16384); 0: every view ray within half a pixel of one, within the technique's own limits.

@@ -1,4 +1,4 @@
-//! Which slices a camera sees: enough of them that no view ray is farther than half a pixel from one.
+//! The slices that a camera sees: enough of them that no view ray is farther than half a pixel from one.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,7 +8,7 @@ use crate::camera::CameraRays;
 /// The most slices by the half-pixel rule: at very wide angles the rule is given up before memory is.
 const MAX_SLICES: usize = 1 << 14;
 
-/// How many slices a picture gets.
+/// Rules for the number of slices of an image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SliceCount {
     /// So many.
@@ -31,7 +31,7 @@ pub(crate) struct Slices {
 }
 
 impl Slices {
-    /// For a perspective camera of this picture.
+    /// For a perspective camera of this image.
     pub(crate) fn new(
         frame: &EpipolarFrame,
         camera: &CameraRays,
@@ -39,26 +39,26 @@ impl Slices {
         count: SliceCount,
     ) -> Self {
         let alpha_at = |x: f64, y: f64| frame.view_ray(camera.direction(x, y)).0;
-        let axis_in_picture = [frame.axis(), -frame.axis()]
+        let axis_in_image = [frame.axis(), -frame.axis()]
             .iter()
             .any(|end| camera.sees(*end, 1.0));
-        Self::over(alpha_at, true, axis_in_picture, size, count)
+        Self::over(alpha_at, true, axis_in_image, size, count)
     }
 
-    /// For a picture whose pixel (x, y) has this alpha; `turns` where alpha is an angle about an axis.
+    /// For an image whose pixel (x, y) has this alpha; `turns` where alpha is an angle about an axis.
     pub(crate) fn over(
         alpha_at: impl Fn(f64, f64) -> f64,
         turns: bool,
-        axis_in_picture: bool,
+        axis_in_image: bool,
         size: [u32; 2],
         count: SliceCount,
     ) -> Self {
         let [width, height] = size.map(f64::from);
         let difference = |a: f64, b: f64| if turns { turn(a - b) } else { a - b };
-        let [first, range] = if axis_in_picture {
+        let [first, range] = if axis_in_image {
             [0.0, TAU]
         } else {
-            // The picture is a convex cone that misses the axis: less than half a turn about its middle.
+            // The image is a convex cone that misses the axis: less than half a turn about its middle.
             let middle = alpha_at(0.5 * width, 0.5 * height);
             let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
             let offsets = corners.map(|[x, y]| difference(alpha_at(x, y), middle));
@@ -87,7 +87,7 @@ impl Slices {
 
     /// True where the last slice is a neighbour of the first.
     #[cfg(feature = "gpu")]
-    pub(crate) fn is_whole_turn(&self) -> bool {
+    pub(crate) fn is_full_turn(&self) -> bool {
         self.turns && (self.step * self.count as f64 - TAU).abs() < 1e-9
     }
 
@@ -120,7 +120,7 @@ fn turn(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// The smallest change of alpha over one pixel across the slices, over a grid of the picture's points.
+/// The smallest change of alpha over one pixel across the slices, over a grid of the image's points.
 fn smallest_step(
     alpha_at: impl Fn(f64, f64) -> f64,
     difference: impl Fn(f64, f64) -> f64,

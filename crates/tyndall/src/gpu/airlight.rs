@@ -10,7 +10,7 @@ use crate::{
 /// Sets of phase functions that are kept; the oldest goes when another comes.
 const KEPT: usize = 8;
 
-/// The tables of the media of late, as textures that `airlight.wgsl` reads.
+/// The tables of the media of late, as textures that `airlight.wesl` reads.
 #[derive(Default)]
 pub(crate) struct AirlightTextures {
     kept: Mutex<Vec<(Vec<Phase>, wgpu::TextureView)>>,
@@ -46,7 +46,7 @@ impl AirlightTextures {
     }
 }
 
-/// The tables as a texture that `airlight.wgsl` reads, one layer a phase function.
+/// The tables as a texture that `airlight.wesl` reads, one layer a phase function.
 pub(crate) fn upload(
     device: &wgpu::Device,
     queue: &wgpu::Queue,

@@ -2,7 +2,7 @@
 
 use crate::error::PrepareError;
 
-/// Refuses storage buffers larger than the device binds: what each holds, and its bytes. `of` is whose they are.
+/// Refuses storage buffers larger than the device binds, given by content and bytes. `of` names their owner.
 pub(crate) fn check_storage(
     limits: &wgpu::Limits,
     of: &str,

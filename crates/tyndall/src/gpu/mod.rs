@@ -2,14 +2,19 @@
 
 pub(crate) mod airlight;
 mod bindings;
+mod by_type;
 pub(crate) mod cache;
+mod camera;
+mod floats;
 pub(crate) mod layout;
+mod light;
 pub(crate) mod limits;
 pub(crate) mod pass;
 pub(crate) mod pool;
 pub(crate) mod program;
 pub(crate) mod scope;
 pub(crate) mod shader;
+pub(crate) mod shared;
 mod timer;
 pub(crate) mod uniforms;
 

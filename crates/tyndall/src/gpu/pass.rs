@@ -1,4 +1,4 @@
-//! What a technique asks of the GPU: passes as data, in the order they run.
+//! Passes as data, in the order they run.
 
 use super::PassTimer;
 
@@ -10,11 +10,11 @@ pub(crate) struct Pass {
 
 /// The passes of one light, in the order they run.
 pub(crate) struct LightPasses {
-    /// All but the last: they read the frame and the light, and write what the last one reads.
+    /// All but the last: they read the frame and the light, and write resources that the last one reads.
     pub(crate) before: Vec<Pass>,
     /// Writes the light's in-scatter to the scope's target, pixel by pixel.
     pub(crate) last: Pass,
-    /// Buffer that the last pass reads at its own tile (see `passes/occluder/tile.wgsl`) and that may change where neither
+    /// Buffer that the last pass reads at its own tile (see `passes/occluder/tile.wesl`) and that may change where neither
     /// depth nor shadow map do.
     pub(crate) witness: Option<wgpu::Buffer>,
     /// Share of the light that reaches each pixel's surface, where it was asked for and the technique computes it.
@@ -33,13 +33,13 @@ impl LightPasses {
     }
 }
 
-/// What a pass does.
+/// The work of a pass.
 pub(crate) enum Work {
     /// Dispatches, each of which sees what the ones before it wrote.
     Compute(Vec<Dispatch>),
-    /// Triangles over the whole of a picture each, whose former content is lost.
+    /// Triangles that cover their targets, whose former content is lost.
     FullScreen(Vec<FullScreen>),
-    /// Draws one after the other, onto a cleared picture.
+    /// Draws one after the other, onto a cleared texture.
     Draw {
         target: wgpu::TextureView,
         draws: Vec<Draw>,
@@ -59,7 +59,7 @@ pub(crate) struct Dispatch {
     pub(crate) workgroups: Workgroups,
 }
 
-/// How many workgroups a dispatch has.
+/// The number of workgroups of a dispatch.
 pub(crate) enum Workgroups {
     Count([u32; 3]),
     /// Three numbers that an earlier pass wrote to a buffer, at this offset [bytes].
@@ -78,10 +78,10 @@ pub(crate) struct FullScreen {
     /// Bind groups 0, 1 and so on.
     pub(crate) groups: Vec<wgpu::BindGroup>,
     pub(crate) target: wgpu::TextureView,
-    /// Where there is one, the target keeps its content, and is drawn on only where this is 1.
+    /// If there is one, the target keeps its content, and is drawn on only where this is 1.
     pub(crate) stencil: Option<wgpu::TextureView>,
-    /// Where there is one, what stands in this buffer at this offset [bytes] is drawn, 3 vertices, none, or points, and the
-    /// target keeps its content.
+    /// If there is one, the draw's arguments are read from this buffer at this offset [bytes], and the target keeps its
+    /// content.
     pub(crate) gate: Option<(wgpu::Buffer, u64)>,
 }
 
@@ -93,11 +93,11 @@ pub(crate) struct Draw {
     pub(crate) vertices: Vertices,
 }
 
-/// How much a draw draws.
+/// The number of vertices of a draw.
 pub(crate) enum Vertices {
     /// So many vertices, so many times.
     Direct { vertices: u32, instances: u32 },
-    /// What stands in a buffer at an offset [bytes].
+    /// Arguments in a buffer, at this offset [bytes].
     Indirect(wgpu::Buffer, u64),
 }
 
@@ -200,14 +200,14 @@ fn stencil_attachment(
     }
 }
 
-/// What a render pass draws on.
+/// The content that a render pass draws onto.
 #[derive(Clone, Copy)]
 enum Onto<'a> {
-    /// A cleared picture.
+    /// None: the target is cleared.
     Cleared,
-    /// What is there.
+    /// The target's.
     Kept,
-    /// What is there, through a stencil.
+    /// The target's, through a stencil.
     Stencilled(&'a wgpu::TextureView),
 }
 

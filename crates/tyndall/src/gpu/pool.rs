@@ -3,8 +3,20 @@
 
 use std::{any::Any, collections::HashMap};
 
-/// Whose something is (a light's index, or the view's own) and what it is called.
-pub(crate) type Key = (Option<usize>, &'static str);
+/// Whose something is, and what it is called.
+pub(crate) type Key = (Owner, &'static str);
+
+/// Whose something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Owner {
+    /// The view's own.
+    View,
+    /// A light's, by its index: what it holds stays from frame to frame.
+    Light(usize),
+    /// Any light's while its passes run, by its extent: the passes of one light end before those of the next begin, so that
+    /// lights share it.
+    Scratch([u64; 2]),
+}
 
 #[derive(Default)]
 pub(crate) struct Pool {

@@ -5,19 +5,19 @@ use std::{
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use super::{scope::Shared, shader::Shader, uniforms::LightVariant};
+use super::{shader::Shader, shared::Shared, uniforms::LightVariant};
 
-/// What a stencil is kept in.
+/// Format of stencils.
 pub(crate) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
 
-/// What a render pipeline does with a stencil.
+/// A render pipeline's use of a stencil.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Stencil {
     /// There is none.
     Absent,
     /// Draws where it is 1.
     Tested,
-    /// Writes it, and no picture.
+    /// Writes it, and no colour.
     Written,
 }
 
@@ -57,7 +57,7 @@ impl Stencil {
     }
 }
 
-/// Where a render pipeline's triangles come from and go to.
+/// A render pipeline's vertices, and its target.
 #[derive(Clone)]
 pub(crate) struct Raster {
     /// Entry point of the vertex stage.
@@ -78,7 +78,7 @@ impl Raster {
         }
     }
 
-    /// A pipeline that draws so; vertices come from shaders alone, both sides are drawn, no depth.
+    /// Creates the pipeline: no vertex buffers, culling or depth.
     pub(crate) fn pipeline(
         &self,
         device: &wgpu::Device,
@@ -128,15 +128,15 @@ pub(crate) struct Recipe {
     entry_point: &'static str,
     shader: Arc<Shader>,
     shared: [wgpu::BindGroupLayout; 2],
-    /// How a render pass draws.
+    /// The settings of a render pipeline.
     raster: Raster,
-    /// Whether lights of different kinds need pipelines of their own.
+    /// True where lights of different kinds need pipelines of their own.
     reads_light: bool,
     /// Overrides besides the light's.
     constants: Vec<(&'static str, f64)>,
 }
 
-/// What the entry points of a recipe bind themselves.
+/// Layouts of what the entry points of a recipe bind themselves.
 struct Own {
     /// Binding numbers of group 2, in order.
     bindings: Vec<u32>,
@@ -145,6 +145,18 @@ struct Own {
 }
 
 impl Recipe {
+    /// The variant but for what the shader does not read, so that one pipeline does for all that differ in nothing else.
+    fn needed(&self, variant: LightVariant) -> LightVariant {
+        let reads_medium = self.shader.reflection.has_override("MEDIUM_PHASES");
+        let phases = if reads_medium { variant.phases } else { 0 };
+        let light = if self.reads_light {
+            variant
+        } else {
+            LightVariant::default()
+        };
+        LightVariant { phases, ..light }
+    }
+
     fn own(&self, device: &wgpu::Device) -> Own {
         let entry_points = [self.entry_point, self.raster.vertex];
         let entries = self.shader.reflection.bindings_of(2, &entry_points);
@@ -257,25 +269,25 @@ impl<P: Pipeline> Program<P> {
         }
     }
 
-    /// The same, but full-screen passes write this format.
+    /// Has full-screen passes write this format.
     pub(crate) fn writing(mut self, format: wgpu::TextureFormat) -> Self {
         self.recipe.raster.target = format.into();
         self
     }
 
-    /// The same, but drawing so.
+    /// Has the pipeline draw so.
     pub(crate) fn drawing(mut self, raster: Raster) -> Self {
         self.recipe.raster = raster;
         self
     }
 
-    /// The same with another override.
+    /// Sets an override.
     pub(crate) fn with(mut self, name: &'static str, value: f64) -> Self {
         self.recipe.constants.push((name, value));
         self
     }
 
-    /// Of a shader that does not read the light: one pipeline does for all.
+    /// Says that the shader does not read the light: one pipeline serves all.
     pub(crate) fn for_all_lights(mut self) -> Self {
         self.recipe.reads_light = false;
         self
@@ -309,7 +321,7 @@ impl<P: Pipeline> Program<P> {
     /// Workgroups that take so many invocations in x, y and z.
     ///
     /// # Panics
-    /// Where the entry point is of no compute shader.
+    /// Panics if the entry point is of no compute shader.
     pub(crate) fn workgroups(&self, invocations: [u32; 3]) -> [u32; 3] {
         let size = self
             .recipe
@@ -325,18 +337,14 @@ impl<P: Pipeline> Program<P> {
         self.with_stencil(device, variant, Stencil::Absent)
     }
 
-    /// The same for passes with a stencil.
+    /// The pipeline for this kind of light, in passes with a stencil.
     pub(crate) fn with_stencil(
         &self,
         device: &wgpu::Device,
         variant: LightVariant,
         stencil: Stencil,
     ) -> P {
-        let variant = if self.recipe.reads_light {
-            variant
-        } else {
-            LightVariant::default()
-        };
+        let variant = self.recipe.needed(variant);
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let make = || {
             let mut constants = variant.constants().to_vec();

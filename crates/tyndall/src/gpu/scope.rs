@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
+pub(crate) use super::shared::Shared;
 use super::{
-    bindings::Bindings,
-    cache::{ProgramCache, Programs},
+    cache::Programs,
     pass::{Dispatch, Draw, FullScreen, Pass, Vertices, Work, Workgroups},
-    pool::Pool,
+    pool::{Owner, Pool},
     program::{ComputeProgram, ScreenProgram, Stencil},
-    shader::Shaders,
     uniforms::LightVariant,
 };
 use crate::{
@@ -16,31 +15,6 @@ use crate::{
     frame::{Frame, Light},
     inputs::{Count, CountValue, LightInputs, SurfaceShadows},
 };
-
-/// What all passes of an effect share.
-pub(crate) struct Shared {
-    pub(crate) bindings: Bindings,
-    /// Format of the in-scattered light.
-    pub(crate) output: wgpu::TextureFormat,
-    pub(crate) shaders: Shaders,
-    programs: ProgramCache,
-}
-
-impl Shared {
-    pub(crate) fn new(device: &wgpu::Device, output: wgpu::TextureFormat) -> Self {
-        Self {
-            bindings: Bindings::new(device),
-            output,
-            shaders: Shaders::default(),
-            programs: ProgramCache::default(),
-        }
-    }
-
-    /// The effect's programs of this type.
-    pub(crate) fn programs<P: Programs>(&self, device: &wgpu::Device) -> Arc<P> {
-        self.programs.get(|| P::new(device, self))
-    }
-}
 
 /// One light of a frame that is being prepared.
 pub(crate) struct LightScope<'a> {
@@ -100,8 +74,12 @@ impl LightScope<'_> {
         name: &'static str,
         value: &T,
     ) -> wgpu::Buffer {
-        self.pool
-            .uniform(self.device, self.queue, (Some(self.index), name), value)
+        self.pool.uniform(
+            self.device,
+            self.queue,
+            (Owner::Light(self.index), name),
+            value,
+        )
     }
 
     /// Blocks of one kind in a uniform buffer of this light, for dispatches that take one each; room for at least one.
@@ -117,7 +95,7 @@ impl LightScope<'_> {
             block[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(value));
         }
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let key = (Some(self.index), name);
+        let key = (Owner::Light(self.index), name);
         let buffer = self
             .pool
             .buffer(self.device, key, bytes.len() as u64, usage);
@@ -129,11 +107,26 @@ impl LightScope<'_> {
         }
     }
 
-    /// A storage buffer of this light.
+    /// A storage buffer for the passes of this light, which others share.
     pub(crate) fn storage(&mut self, name: &'static str, bytes: u64) -> wgpu::Buffer {
+        self.scratch(name, bytes, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// A storage buffer of this light that holds what was written to it in frames before.
+    pub(crate) fn kept_storage(&mut self, name: &'static str, bytes: u64) -> wgpu::Buffer {
+        let key = (Owner::Light(self.index), name);
         let usage = wgpu::BufferUsages::STORAGE;
-        self.pool
-            .buffer(self.device, (Some(self.index), name), bytes, usage)
+        self.pool.buffer(self.device, key, bytes, usage)
+    }
+
+    fn scratch(
+        &mut self,
+        name: &'static str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> wgpu::Buffer {
+        let key = (Owner::Scratch([bytes, 0]), name);
+        self.pool.buffer(self.device, key, bytes, usage)
     }
 
     /// A storage buffer of this light that holds these values.
@@ -143,7 +136,7 @@ impl LightScope<'_> {
         values: &[T],
     ) -> wgpu::Buffer {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-        let key = (Some(self.index), name);
+        let key = (Owner::Light(self.index), name);
         let bytes: &[u8] = bytemuck::cast_slice(values);
         let buffer = self
             .pool
@@ -152,7 +145,7 @@ impl LightScope<'_> {
         buffer
     }
 
-    /// A texture of this light.
+    /// A texture for the passes of this light, which others share.
     pub(crate) fn texture(
         &mut self,
         name: &'static str,
@@ -161,28 +154,31 @@ impl LightScope<'_> {
         format: wgpu::TextureFormat,
         usage: wgpu::TextureUsages,
     ) -> wgpu::Texture {
-        let key = (Some(self.index), name);
+        let plane = u64::from(size.width) << 32 | u64::from(size.height);
+        let key = (
+            Owner::Scratch([plane, size.depth_or_array_layers.into()]),
+            name,
+        );
         self.pool
             .texture(self.device, key, size, levels, format, usage)
     }
 
-    /// A storage buffer of this light that holds workgroups of so many dispatches.
+    /// A storage buffer that holds the workgroups of so many dispatches of this light.
     pub(crate) fn indirect(&mut self, name: &'static str, dispatches: u64) -> wgpu::Buffer {
         self.indirect_bytes(name, dispatches * size_of::<[u32; 3]>() as u64)
     }
 
-    /// A storage buffer of this light that holds vertices of so many draws.
+    /// A storage buffer that holds the vertices of so many draws of this light.
     pub(crate) fn indirect_draws(&mut self, name: &'static str, draws: u64) -> wgpu::Buffer {
         self.indirect_bytes(name, draws * size_of::<[u32; 4]>() as u64)
     }
 
     fn indirect_bytes(&mut self, name: &'static str, bytes: u64) -> wgpu::Buffer {
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-        self.pool
-            .buffer(self.device, (Some(self.index), name), bytes, usage)
+        self.scratch(name, bytes, usage)
     }
 
-    /// A texture of this light that a compute shader writes and others read.
+    /// A texture for the passes of this light that a compute shader writes and others read.
     pub(crate) fn storage_texture(
         &mut self,
         name: &'static str,
@@ -195,15 +191,7 @@ impl LightScope<'_> {
             height,
             depth_or_array_layers: 1,
         };
-        self.pool
-            .texture(
-                self.device,
-                (Some(self.index), name),
-                size,
-                1,
-                format,
-                usage,
-            )
+        self.texture(name, size, 1, format, usage)
             .create_view(&wgpu::TextureViewDescriptor::default())
     }
 

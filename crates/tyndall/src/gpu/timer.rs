@@ -1,6 +1,6 @@
-//! Timestamps round named passes, for whoever wants to know what a frame costs.
+//! Timestamps round named passes, for callers that measure a frame's cost.
 
-/// Where passes write their timestamps. The owner makes it, resolves it after recording and reads the buffer.
+/// Collects the timestamps that passes write. The owner makes it, resolves it after recording and reads the buffer.
 pub struct PassTimer {
     queries: wgpu::QuerySet,
     names: Vec<String>,

@@ -2,7 +2,7 @@
 
 use crate::mesh::Occluder;
 
-/// The caller's pictures of one frame.
+/// The caller's textures of one frame.
 #[derive(Clone, Copy)]
 pub struct FrameInputs<'a> {
     /// The depth buffer (2-D, one sample, depth aspect), of the view's size, in the camera's convention.
@@ -11,7 +11,7 @@ pub struct FrameInputs<'a> {
     pub lights: &'a [LightInputs<'a>],
 }
 
-/// The caller's pictures of one light.
+/// The caller's textures of one light, and the geometry that blocks it.
 #[derive(Clone, Copy, Default)]
 pub struct LightInputs<'a> {
     /// The shadow map: a depth texture viewed as a 2-D array of 1 layer, or of 6 for a cube.
@@ -20,16 +20,17 @@ pub struct LightInputs<'a> {
     /// shadow map's convention as the bits of an f32, and its tint as three 10-bit square roots (red lowest). Layers come
     /// nearest to the light first, empty ones last.
     pub glass: Option<&'a wgpu::TextureView>,
-    /// The light's texture: 2-D, filterable, linear when read. Temporal reuse takes its content to stay while the view is
-    /// the same.
+    /// The light's texture: 2-D, filterable, linear when read. Temporal reuse assumes that its content stays while the view
+    /// is the same.
     pub texture: Option<&'a wgpu::TextureView>,
     /// All that may block this light, as triangles, for techniques that bound shadows by geometry (`hybrid`); `None`: not
     /// known.
     pub occluders: Option<&'a [Occluder<'a>]>,
     /// The surfaces that block a rectangular light; `None`: nothing does.
     pub points: Option<PointCloud<'a>>,
-    /// A number that changes whenever the shadow map's content does: what a technique made of the map alone for the
-    /// frame before, if that was recorded and submitted, is used again. `None`: the map may change from frame to frame.
+    /// A number of the shadow map's content. Change it whenever the map's content changes; while it is equal, data derived
+    /// from the map is reused, provided that the frame before was recorded and submitted. `None`: nothing is reused, for the
+    /// map may change from frame to frame.
     pub shadow_revision: Option<u64>,
 }
 
@@ -43,7 +44,7 @@ pub struct PointCloud<'a> {
     pub map_side: u32,
 }
 
-/// What shadows on surfaces are made of besides a frame's inputs.
+/// Inputs of shadows on surfaces, besides a frame's.
 #[derive(Clone, Debug, Default)]
 pub struct SurfaceShadows {
     /// World-space normals of what each pixel sees, unit length in rgb, facing the viewer: 2-D, of floats, of the view's size.
@@ -52,16 +53,16 @@ pub struct SurfaceShadows {
     pub normals: Option<wgpu::TextureView>,
 }
 
-/// A number that says what a frame took, beside its time.
+/// A number that tells a frame's cost, beside its time.
 #[derive(Clone, Debug)]
 pub struct Count {
-    /// What it counts, and of which light.
+    /// The thing counted, and the light's index.
     pub name: String,
-    /// Where to find it.
+    /// The number, or its place.
     pub value: CountValue,
 }
 
-/// Where a [`Count`] is found.
+/// A [`Count`]'s number, or its place.
 #[derive(Clone, Debug)]
 pub enum CountValue {
     /// Here.
@@ -70,7 +71,7 @@ pub enum CountValue {
     Written {
         /// The buffer.
         buffer: wgpu::Buffer,
-        /// Where the number stands in it [bytes].
+        /// The number's offset in it [bytes].
         offset: u64,
     },
 }

@@ -1,4 +1,4 @@
-//! Textures that a frame is made from besides its plain data, on the CPU and on the GPU.
+//! Textures of a frame, besides its plain data, on the CPU and on the GPU.
 
 mod cpu;
 #[cfg(feature = "gpu")]

@@ -11,10 +11,10 @@ use crate::{
     shadow::{Occluders, Shadows},
 };
 
-/// What the CPU backend reads besides the [`Frame`]; the same pictures the GPU backend is handed as textures.
+/// Inputs of the CPU backend besides the [`Frame`]; the GPU backend is handed the same images as textures.
 #[derive(Clone, Copy)]
 pub struct CpuInputs<'a> {
-    /// Width and height of the picture [pixels].
+    /// Width and height of the image [pixels].
     pub size: [u32; 2],
     /// The depth buffer, row by row from the top left, one value a pixel, in the camera's convention.
     pub depth: &'a [f32],
@@ -40,7 +40,7 @@ pub(crate) struct CpuLight<'a> {
     pub(crate) shadows: Option<Shadows<'a>>,
 }
 
-/// What computes the in-scattered light of one ray.
+/// Computes the in-scattered light of single rays.
 /// Techniques that work slice by slice do their work when they are made, and only hand out its results here.
 pub(crate) trait RayIntegrator: Sync {
     /// `pixel` counts row by row from the top left.

@@ -114,7 +114,7 @@ pub(crate) struct Integral<'a> {
     model: &'a LightModel<'a>,
     scene: &'a CpuScene<'a>,
     tolerance: f64,
-    /// Where the light is nearest to the ray: distance along the ray, and from it [m].
+    /// The point nearest to the light: distance along the ray, and from the light [m].
     nearest: Option<[f64; 2]>,
 }
 
@@ -211,7 +211,7 @@ import tyndall::light::stretch::stretch_plain;
         in_one_group(&harness(imports, &[], &[("LIGHT_KIND", kind)]))
     }
 
-    /// The GPU's closed forms and its four-point panels against f64 quadrature, relative to the whole ray.
+    /// The GPU's closed forms and its four-point panels against f64 quadrature, relative to the entire ray.
     #[cfg(feature = "gpu")]
     #[test]
     fn wgsl_twin_agrees() {
@@ -364,10 +364,10 @@ import tyndall::light::stretch::stretch_plain;
                     }
                     integrate_lit(&ray, model, &scene, 1e-7, span, &mut Vec::new())
                 };
-                let (exact, whole) = (over([x[6], x[6] + x[7]]), over([0.0, 40.0]));
+                let (exact, entire) = (over([x[6], x[6] + x[7]]), over([0.0, 40.0]));
                 let found = DVec3::new(found[0].into(), found[1].into(), found[2].into());
-                if whole.min_element() > 0.0 {
-                    worst = worst.max(((found - exact).abs() / whole).max_element());
+                if entire.min_element() > 0.0 {
+                    worst = worst.max(((found - exact).abs() / entire).max_element());
                 } else {
                     assert_eq!(found, DVec3::ZERO, "{emitter:?}: {x:?}");
                 }

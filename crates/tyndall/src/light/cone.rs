@@ -1,4 +1,4 @@
-//! Where a ray is inside a spot light's cone.
+//! The part of a ray that is inside a spot light's cone.
 
 /// The part of the ray `q0 + s v` inside the cone of unit `axis` and half angle acos(`cos_outer`) < pi/2 about the
 /// origin, intersected with `[a, b]`; empty (`a >= b`) where it misses. `v` has unit length.

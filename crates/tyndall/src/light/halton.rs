@@ -39,7 +39,7 @@ mod tests {
         }
     }
 
-    /// Of 2^4 3^3 points after the first, each box of 1/16 by 1/27 holds one.
+    /// Each box of 1/16 by 1/27 holds one of the 2^4 3^3 points after the first.
     #[test]
     fn every_elementary_box_holds_one_point() {
         let mut counts = [0; 16 * 27];

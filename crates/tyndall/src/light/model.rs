@@ -41,7 +41,7 @@ enum Shape {
 /// Light that arrives at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Incident {
-    /// The way it travels, unit length.
+    /// The direction in which it travels, unit length.
     pub direction: DVec3,
     /// Irradiance on a surface that faces it [W/m^2].
     pub irradiance: DVec3,
@@ -126,7 +126,7 @@ impl<'a> LightModel<'a> {
         }
     }
 
-    /// Where the light comes from.
+    /// The light's place, or the direction of the sun's light.
     pub fn source(&self) -> LightSource {
         match self.shape {
             Shape::Parallel { direction } => LightSource::Direction(direction.to_array()),
@@ -144,7 +144,7 @@ impl<'a> LightModel<'a> {
         }
     }
 
-    /// The way a spot shines and the angle of its cone [rad]; `None` for other lights.
+    /// The direction in which a spot shines, and the angle of its cone [rad]; `None` for other lights.
     pub(crate) fn cone(&self) -> Option<(DVec3, f64)> {
         match self.shape {
             Shape::Spot {
@@ -165,7 +165,7 @@ impl<'a> LightModel<'a> {
         self.texture.is_none() && matches!(self.shape, Shape::Parallel { .. } | Shape::Point { .. })
     }
 
-    /// Illuminance [W/m^2] or intensity [W/sr] before cone, picture and distance.
+    /// Illuminance [W/m^2] or intensity [W/sr] before cone, texture and distance.
     pub(crate) fn strength(&self) -> DVec3 {
         self.color
     }
@@ -195,7 +195,7 @@ impl<'a> LightModel<'a> {
     }
 
     /// Appends distances within `(a, b)`, in any order, between which the light along the ray is smooth but for the
-    /// small kinks at a picture's texels: the borders of a spot's inner cone and of the picture, and enough points
+    /// small kinks at a texture's texels: the borders of a spot's inner cone and of the texture, and enough points
     /// between that no stretch spans many texels.
     pub(crate) fn breaks(
         &self,
@@ -214,8 +214,8 @@ impl<'a> LightModel<'a> {
             let inner = cone::cone_interval(origin - position, direction, axis, cos_inner, [a, b]);
             breaks.extend(inner.iter().filter(|s| **s > a && **s < b));
         }
-        if let Some((mapping, picture)) = &self.texture {
-            mapping.breaks(origin, direction, [a, b], picture.size, breaks);
+        if let Some((mapping, texture)) = &self.texture {
+            mapping.breaks(origin, direction, [a, b], texture.size, breaks);
         }
     }
 
@@ -244,19 +244,19 @@ impl<'a> LightModel<'a> {
         }
     }
 
-    /// What the light ray through a point is dimmed by on its whole length: picture and cone.
+    /// Transmission of the light ray through a point, on its whole length: texture and cone.
     pub(crate) fn ray_tint(&self, point: DVec3) -> DVec3 {
         let from_light = self.position().map_or(DVec3::ZERO, |p| point - p);
         self.picture_at(point) * self.falloff(from_light.normalize_or_zero())
     }
 
     fn picture_at(&self, point: DVec3) -> DVec3 {
-        self.texture.map_or(DVec3::ONE, |(mapping, picture)| {
-            picture.sample(mapping.uv(point))
+        self.texture.map_or(DVec3::ONE, |(mapping, texture)| {
+            texture.sample(mapping.uv(point))
         })
     }
 
-    /// Of light that leaves a local light this way (unit length).
+    /// The cone's transmission for light that leaves a local light in this direction (unit length).
     fn falloff(&self, direction: DVec3) -> f64 {
         match self.shape {
             Shape::Spot {

@@ -1,4 +1,4 @@
-//! Light textures: the picture a light shines through, looked up by the point it shines on.
+//! Light textures: images that lights shine through, looked up by the point a light shines on.
 
 use std::f64::consts::PI;
 
@@ -10,30 +10,30 @@ use crate::{
     physics::reals,
 };
 
-/// How a point becomes a place on the picture: rows of an affine map relative to `origin`.
+/// Maps points to places on the texture: rows of an affine map relative to `origin`.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureMapping {
     /// World-space origin of the rows [m].
     pub origin: DVec3,
     /// Rows that give u, v, and w; see `kind`.
     pub rows: [DVec3; 3],
-    /// What the rows' products mean.
+    /// The meaning of the rows' products.
     pub kind: MappingKind,
 }
 
-/// What the products (u, v, w) of a [`TextureMapping`]'s rows mean.
+/// The meaning of the products (u, v, w) of a [`TextureMapping`]'s rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MappingKind {
-    /// (u, v) are picture coordinates from its middle.
+    /// (u, v) are texture coordinates from its middle.
     Affine,
-    /// (u / w, v / w) are picture coordinates from its middle.
+    /// (u / w, v / w) are texture coordinates from its middle.
     Projective,
     /// (u, v, w) are right, up and forward of the direction that longitude and latitude are taken of.
     Sphere,
 }
 
 impl TextureMapping {
-    /// The mapping of a light's picture. `None` where the placement is not of this kind of light, or is degenerate.
+    /// The mapping of a light's texture. `None` where the placement is not of this kind of light, or is degenerate.
     pub fn new(emitter: &Emitter, placement: &TexturePlacement) -> Option<Self> {
         match (*emitter, *placement) {
             (
@@ -101,7 +101,7 @@ impl TextureMapping {
         })
     }
 
-    /// Picture coordinates of a world-space point: (0, 0) top left, (1, 1) bottom right.
+    /// Texture coordinates of a world-space point: (0, 0) top left, (1, 1) bottom right.
     pub fn uv(&self, point: DVec3) -> [f64; 2] {
         let q = point - self.origin;
         let [u, v, w] = self.rows.map(|row| row.dot(q));
@@ -115,7 +115,7 @@ impl TextureMapping {
         }
     }
 
-    /// Appends the distances of the ray within `(a, b)` where it crosses the picture's border, and points between
+    /// Appends the distances of the ray within `(a, b)` where it crosses the texture's border, and points between
     /// such that a stretch spans at most [`TEXELS_A_STRETCH`] texels (on the sphere: a fixed number).
     pub(crate) fn breaks(
         &self,
@@ -150,11 +150,11 @@ impl TextureMapping {
 
 /// Texels that quadrature may take at once.
 const TEXELS_A_STRETCH: u32 = 8;
-/// Stretches of a ray past a light with a picture on its sphere.
+/// Stretches of a ray past a light with a texture on its sphere.
 const SPHERE_STRETCHES: u32 = 64;
 
 impl LightTexture {
-    /// The picture at (u, v), bilinear between texel centres; black outside it.
+    /// The texture at (u, v), bilinear between texel centres; black outside it.
     pub fn sample(&self, [u, v]: [f64; 2]) -> DVec3 {
         if !((0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)) {
             return DVec3::ZERO;

@@ -1,4 +1,4 @@
-//! Which triangles share an edge.
+//! Edges of a mesh, and the triangles that share them.
 
 use std::collections::HashMap;
 

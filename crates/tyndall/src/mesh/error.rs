@@ -1,31 +1,31 @@
-//! Why a mesh could not be made.
+//! The errors of making an occluder mesh.
 
-/// Why an occluder mesh could not be made.
+/// An occluder mesh could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OccluderError {
     /// A position is infinite or not a number.
     #[error("positions[{index}] must be finite, found {found:?}")]
     Position {
-        /// Where it stands.
+        /// Its index in the list.
         index: usize,
-        /// What was given.
+        /// The value given.
         found: [f32; 3],
     },
     /// An index is of no position.
     #[error("indices[{index}] must be below {positions}, the number of positions, found {found}")]
     Index {
-        /// Where it stands.
+        /// Its index in the list.
         index: usize,
-        /// How many positions there are.
+        /// The number of positions.
         positions: usize,
-        /// What was given.
+        /// The value given.
         found: u32,
     },
     /// Indices come three a triangle.
     #[error("indices must be three a triangle, found {found}")]
     Indices {
-        /// How many were given.
+        /// The number given.
         found: usize,
     },
     /// A buffer would be larger than the device binds.
@@ -33,7 +33,7 @@ pub enum OccluderError {
         "{what} of an occluder mesh: {needed} bytes are more than the device's max_storage_buffer_binding_size, {limit}"
     )]
     Limit {
-        /// What the buffer holds.
+        /// The buffer's content.
         what: &'static str,
         /// Bytes it needs.
         needed: u64,

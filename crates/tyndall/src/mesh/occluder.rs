@@ -30,7 +30,7 @@ impl OccluderMesh {
     /// triangle, in either orientation. Triangles without an area and repeated ones are left out.
     ///
     /// # Errors
-    /// Where a position is not finite, an index out of range, or the mesh larger than what the device binds.
+    /// Fails if a position is not finite, an index out of range, or the mesh larger than what the device binds.
     pub fn new(
         device: &wgpu::Device,
         positions: &[[f32; 3]],

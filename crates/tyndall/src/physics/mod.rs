@@ -2,7 +2,6 @@
 
 pub mod airlight;
 pub mod medium;
-pub mod phase;
 pub(crate) mod quadrature;
 pub mod transmittance;
 mod vector;

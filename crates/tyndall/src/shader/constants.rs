@@ -2,10 +2,10 @@
 
 use std::{collections::HashMap, sync::LazyLock};
 
-use super::{package::MODULES, scan::code};
+use super::{package::modules, scan::code};
 
 static CONSTANTS: LazyLock<HashMap<&'static str, u32>> = LazyLock::new(|| {
-    let lines = MODULES.iter().flat_map(|(_, text)| text.lines());
+    let lines = modules().iter().flat_map(|(_, text)| text.lines());
     lines.filter_map(constant_of).collect()
 });
 

@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    package::MODULES,
+    package::modules,
     scan::{declared, split_imports},
 };
 
@@ -95,7 +95,7 @@ impl Default for Linker<'_> {
 impl<'a> Linker<'a> {
     /// Knows the modules of the package.
     pub fn new() -> Self {
-        let modules = MODULES
+        let modules = modules()
             .iter()
             .map(|(path, text)| ((*path).into(), (*text).into()));
         Self {

@@ -1,10 +1,11 @@
 //! The shader package: WGSL modules of one topic each that import from each other, and a linker for them.
 //!
-//! A module is a `.wesl` file; its path is the file's in `src`, `tyndall::physics::phase` for `src/physics/phase.wesl`. It
-//! begins with what it imports, in the syntax of [WESL](https://wesl-lang.dev):
+//! A module is a `.wesl` file; its path is the file's in `src`, `tyndall::physics::medium` for `src/physics/medium.wesl`. It
+//! begins with what it imports, in the syntax of [WESL](https://wesl-lang.dev). One has no file: `tyndall::phase::table`
+//! follows from the [table of phase functions](crate::phase::TABLE).
 //!
 //! ```wgsl
-//! import package::physics::phase::{phase_hg, phase_rayleigh};
+//! import package::physics::medium::{medium_scattering, Medium};
 //! ```
 //!
 //! The [`Linker`] joins a module with all that it imports, each module once, into plain WGSL. Names are not changed, so that
@@ -17,7 +18,7 @@
 //! use tyndall::shader::Linker;
 //!
 //! let fog = "
-//! import tyndall::physics::phase::phase_hg;
+//! import tyndall::phase::henyey_greenstein::phase_hg;
 //! import tyndall::physics::transmittance::transmittance;
 //!
 //! fn fog_glow(distance: f32, cos_theta: f32) -> vec3f {
@@ -33,7 +34,8 @@
 //!
 //! | module | what it has | reads bind group |
 //! |---|---|---|
-//! | `physics::phase` | phase functions | |
+//! | `phase::isotropic`, `rayleigh`, `henyey_greenstein`, `cornette_shanks`, `draine` | a phase function each | |
+//! | `phase::table` | all of them, by their numbers | |
 //! | `physics::transmittance` | extinction along a path, and its integral | |
 //! | `physics::medium` | scattering of the frame's medium | 0 |
 //! | `physics::airlight` | airlight of point lights from the frame's tables | 0 |
@@ -51,6 +53,7 @@ mod block;
 mod constants;
 mod link;
 mod package;
+mod phases;
 mod reflect;
 mod scan;
 #[cfg(test)]
@@ -59,5 +62,5 @@ pub(crate) mod tests;
 pub(crate) use block::block;
 pub(crate) use constants::constant;
 pub use link::{LinkError, Linked, Linker};
-pub use package::MODULES;
+pub use package::modules;
 pub(crate) use reflect::Reflection;

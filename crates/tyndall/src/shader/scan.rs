@@ -3,7 +3,7 @@
 /// What an `import` statement names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Import {
-    /// Path of the module, `tyndall::physics::phase`.
+    /// Path of the module, `tyndall::physics::medium`.
     pub(super) module: String,
     /// What is imported of it.
     pub(super) name: String,

@@ -6,7 +6,7 @@ use naga::{
 };
 
 use super::{
-    LinkError, Linker, MODULES, Reflection, constant,
+    LinkError, Linker, Reflection, constant, modules,
     scan::{code, declared, identifiers, split_imports},
 };
 
@@ -65,7 +65,8 @@ pub(crate) fn in_one_group(wgsl: &str) -> String {
     })
 }
 
-/// The values of the overrides that lights choose: kind with texture, shadow map with glass.
+/// The values of the overrides that lights and media choose: kind with texture, shadow map with glass, phase functions in
+/// turn.
 fn light_variants() -> Vec<Vec<(String, u32)>> {
     let lights = [(0, 0), (0, 1), (1, 0), (1, 3), (2, 0), (2, 2), (3, 0)];
     let shadows = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1)];
@@ -83,18 +84,28 @@ fn light_variants() -> Vec<Vec<(String, u32)>> {
     lights
         .into_iter()
         .flat_map(|light| shadows.map(|shadow| variant(light, shadow)))
+        .zip([0b1, 0b110, 0b1_1111].into_iter().cycle())
+        .map(|(mut variant, phases)| {
+            variant.push(("MEDIUM_PHASES".to_owned(), phases));
+            variant
+        })
         .collect()
 }
 
 #[test]
 fn every_module_is_valid_by_itself_and_so_is_every_variant() {
     let mut entry_points = 0;
-    for (path, _) in MODULES {
+    for (path, _) in modules() {
         let linked = Linker::new().link(path);
         let shader = Reflection::of(linked, ValidationFlags::all());
         let shader = shader.unwrap_or_else(|error| panic!("{error}"));
         let (module, info) = shader.naga();
         entry_points += module.entry_points.len();
+        let has = |stage| module.entry_points.iter().any(|entry| entry.stage == stage);
+        assert!(
+            !has(naga::ShaderStage::Fragment) || has(naga::ShaderStage::Vertex),
+            "{path} draws without vertices: it imports no vertex stage"
+        );
         let declared = |name: &String| shader.has_override(name);
         let variants: BTreeSet<Vec<(String, u32)>> = light_variants()
             .into_iter()
@@ -123,7 +134,7 @@ fn every_module_is_valid_by_itself_and_so_is_every_variant() {
 #[test]
 fn modules_import_what_they_use_and_nothing_else() {
     let owners: HashMap<&str, Vec<&str>> =
-        MODULES.iter().fold(HashMap::new(), |mut all, module| {
+        modules().iter().fold(HashMap::new(), |mut all, module| {
             for name in module.1.lines().filter_map(declared) {
                 all.entry(name).or_insert_with(Vec::new).push(module.0);
             }
@@ -132,7 +143,7 @@ fn modules_import_what_they_use_and_nothing_else() {
     for (name, modules) in &owners {
         assert_eq!(modules.len(), 1, "{name} is declared by {modules:?}");
     }
-    for (path, text) in MODULES {
+    for (path, text) in modules() {
         let (imports, own) = split_imports(text, "tyndall").expect("good imports");
         let imported: BTreeSet<&str> = imports.iter().map(|import| &*import.name).collect();
         let used = used_names(&own);

@@ -119,7 +119,7 @@ mod tests {
     };
     use tyndall_testkit::samples::in_box;
 
-    /// Of odd sizes too, and of every face of a cube: no texel of a rectangle lies beyond its range, and no range is wider
+    /// Odd sizes and every face of a cube included: no texel of a rectangle lies beyond its range, and no range is wider
     /// than that of the rectangle with one square of its level more at each side.
     #[test]
     fn ranges_hold_their_texels_and_few_others() {

@@ -89,7 +89,7 @@ fn cube_face([u, v, axis]: &[DVec3; 3], position: DVec3, near: f64, far: f64) ->
 #[derive(Clone, Debug)]
 pub struct Shadows<'a> {
     pub(super) faces: Vec<Face>,
-    /// Where a cube's faces meet; unused for a single map.
+    /// Centre that a cube's faces meet around; unused for a single map.
     pub(super) center: DVec3,
     pub(super) reversed: bool,
     pub(super) map: &'a ShadowMap,
@@ -97,7 +97,7 @@ pub struct Shadows<'a> {
     pub(super) panes: Panes,
 }
 
-/// Which blocks of a glass map hold any tint: most of a map holds none, and a walk may pass over it block by block.
+/// Blocks of a glass map that hold any tint: most of a map holds none, and a walk may pass over it block by block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Panes {
     /// Blocks a face.
@@ -169,7 +169,7 @@ impl<'a> Shadows<'a> {
         })
     }
 
-    /// What light on its way to `point` is multiplied by: 0 where it is blocked.
+    /// The factor of light that travels to `point`: 0 where it is blocked.
     pub fn tint(&self, point: DVec3) -> DVec3 {
         let face = self.face_of(point);
         let clip = self.faces[face].clip_from_world * point.extend(1.0);

@@ -9,7 +9,7 @@ pub struct Shade {
     pub start: f64,
     /// Distance from the ray's origin where it ends [m] (>= start).
     pub end: f64,
-    /// What the light is multiplied by; zero where the surface blocks.
+    /// The factor of the light; zero where the surface blocks.
     pub tint: [f64; 3],
 }
 

@@ -231,7 +231,7 @@ fn for_each_texel(
     }
 }
 
-/// The distances at which one picture coordinate, `0.5 + 0.5 (x0 + s x1) / w(s)`, crosses texel borders, in order.
+/// The distances at which one coordinate of the map, `0.5 + 0.5 (x0 + s x1) / w(s)`, crosses texel borders, in order.
 struct Borders {
     x: [f64; 2],
     w: [f64; 2],
@@ -277,7 +277,8 @@ impl Borders {
         self.next = self.crossing(after);
     }
 
-    /// Where the coordinate equals the border: `x(s) = k w(s)` with `k = 2 border / count - 1`; not before `after`.
+    /// The distance at which the coordinate equals the border: `x(s) = k w(s)` with `k = 2 border / count - 1`; not before
+    /// `after`.
     fn crossing(&self, after: f64) -> f64 {
         if !(0.0..=self.count).contains(&self.border) {
             return f64::INFINITY;

@@ -81,9 +81,7 @@ impl TechniqueChoice {
 
 fn first_that_can(light: &Light, backend: Backends) -> Technique {
     let can = |info: &&TechniqueInfo| {
-        info.backends.include(backend)
-            && info.lights.contains(&light.kind())
-            && (info.reads.textures || light.texture.is_none())
+        info.can(light.kind(), backend) && (info.reads.textures || light.texture.is_none())
     };
     let info = TABLE.iter().find(can);
     info.map_or_else(Technique::default, TechniqueInfo::default_technique)
@@ -132,6 +130,10 @@ fn check(
     let kind = light.kind();
     if !technique.info().lights.contains(&kind) {
         let what = format!("{} lights (lights[{index}])", kind.name());
+        return Err(unsupported(technique, what));
+    }
+    if !technique.info().can(kind, backend) {
+        let what = format!("{} lights on the CPU (lights[{index}])", kind.name());
         return Err(unsupported(technique, what));
     }
     if kind == LightKind::Rect && light.shadow.is_some() {

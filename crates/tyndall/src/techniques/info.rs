@@ -44,6 +44,8 @@ pub struct TechniqueInfo {
     pub citation: &'static str,
     /// The kinds of light it can do.
     pub lights: &'static [LightKind],
+    /// Those of them that it can do on the GPU alone.
+    pub lights_on_gpu_only: &'static [LightKind],
     /// Where it runs.
     pub backends: Backends,
     /// The inputs it reads besides depth and shadow maps.
@@ -52,6 +54,15 @@ pub struct TechniqueInfo {
     pub shadows_surfaces: bool,
     /// True of the oracle that the others are measured against.
     pub is_reference: bool,
+}
+
+impl TechniqueInfo {
+    /// True where it can do this kind of light on this backend ([`Backends::Cpu`] or [`Backends::Gpu`]).
+    pub fn can(&self, kind: LightKind, backend: Backends) -> bool {
+        self.backends.include(backend)
+            && self.lights.contains(&kind)
+            && !(backend == Backends::Cpu && self.lights_on_gpu_only.contains(&kind))
+    }
 }
 
 /// How far from its own ray a pixel's last pass looks.

@@ -1,8 +1,9 @@
-//! Passes that are recorded, and do nothing where nothing is stale.
+//! Makes passes do nothing where nothing is stale, though they are recorded.
 
-use super::gpu::Buffers;
+use super::buffers::Buffers;
 use crate::gpu::{
     pass::{Dispatch, Pass, Vertices, Work, Workgroups},
+    pool::Owner,
     program::ComputeProgram,
     scope::{LightScope, Shared},
 };
@@ -37,7 +38,7 @@ pub(super) fn gate(
 ) -> Vec<Pass> {
     let slots = passes.iter().map(Pass::parts).sum::<usize>().max(1) as u64;
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-    let key = (Some(scope.index), "reuse gate");
+    let key = (Owner::Light(scope.index), "reuse gate");
     let arguments = scope.pool.buffer(scope.device, key, STRIDE * slots, usage);
     let mut gate = Gate {
         arguments,
@@ -63,31 +64,14 @@ pub(super) fn gate(
         scope.dispatch(&programs.pass, &resources, [1; 3])
     };
     let mut gated = vec![Pass::compute(scope.pass_name("gate"), vec![open])];
-    for Placed { pass, waits } in placed {
-        match pass.work {
-            // A dispatch's size is passed on right before it.
-            Work::Compute(dispatches) => {
-                let pairs = dispatches.into_iter().zip(waits);
-                let dispatches = pairs
-                    .flat_map(|(dispatch, wait)| wait.map(&pass_on).into_iter().chain([dispatch]));
-                gated.push(Pass::compute(pass.name, dispatches.collect()));
-            }
-            work => {
-                let before: Vec<Dispatch> = waits.into_iter().flatten().map(&pass_on).collect();
-                if !before.is_empty() {
-                    gated.push(Pass::compute(format!("gate of {}", pass.name), before));
-                }
-                gated.push(Pass { work, ..pass });
-            }
-        }
-    }
+    gated.extend(placed.into_iter().flat_map(|placed| placed.gated(&pass_on)));
     gated
 }
 
 /// Sizes of a light's passes.
 struct Gate {
     arguments: wgpu::Buffer,
-    /// Of what is known beforehand; zeros where an earlier pass writes it.
+    /// Sizes that are known beforehand; zeros where an earlier pass writes them.
     sizes: Vec<[u32; 4]>,
     written: Vec<Written>,
 }
@@ -104,6 +88,27 @@ struct Placed {
     pass: Pass,
     /// For each dispatch or draw, which of [`Gate::written`] it waits for.
     waits: Vec<Option<usize>>,
+}
+
+impl Placed {
+    /// The pass, with dispatches that pass the sizes on that it waits for, each right before it is needed.
+    fn gated(self, pass_on: &dyn Fn(usize) -> Dispatch) -> Vec<Pass> {
+        let Self { pass, waits } = self;
+        match pass.work {
+            Work::Compute(dispatches) => {
+                let pairs = dispatches.into_iter().zip(waits);
+                let dispatches = pairs
+                    .flat_map(|(dispatch, wait)| wait.map(pass_on).into_iter().chain([dispatch]));
+                vec![Pass::compute(pass.name, dispatches.collect())]
+            }
+            work => {
+                let before: Vec<Dispatch> = waits.into_iter().flatten().map(pass_on).collect();
+                let name = format!("gate of {}", pass.name);
+                let before = (!before.is_empty()).then(|| Pass::compute(name, before));
+                before.into_iter().chain([Pass { work, ..pass }]).collect()
+            }
+        }
+    }
 }
 
 impl Gate {

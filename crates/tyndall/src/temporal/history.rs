@@ -1,4 +1,4 @@
-//! What a view remembers of the frames it prepared, light by light.
+//! A view's memory of the frames it prepared, light by light.
 
 use std::collections::HashMap;
 
@@ -18,13 +18,13 @@ use crate::{
 pub(crate) struct History {
     lights: HashMap<usize, LightHistory>,
     generations: u32,
-    /// Of the frame recorded last.
+    /// Viewpoint of the frame recorded last.
     recorded: Option<Viewpoint>,
-    /// Of the frame prepared last.
+    /// Viewpoint of the frame prepared last.
     prepared: Option<Viewpoint>,
 }
 
-/// Where a frame is seen from.
+/// The camera and eye that a frame is seen from.
 #[derive(Clone, Copy)]
 pub(crate) struct Viewpoint {
     pub(crate) camera: CameraUniform,
@@ -78,14 +78,14 @@ impl Placed {
     }
 }
 
-/// All that a light's picture depends on besides depth buffer and shadow map.
+/// All that a light's image depends on besides depth buffer and shadow map.
 #[derive(Clone, PartialEq)]
 pub(crate) struct Signature {
     camera: Camera,
     scene: SceneSignature,
 }
 
-/// The same but for the camera.
+/// All of it but the camera.
 #[derive(Clone, PartialEq)]
 struct SceneSignature {
     light: Light,
@@ -124,12 +124,12 @@ impl Signature {
         }
     }
 
-    /// Whether a picture of the same signature may be kept: glass without a revision may change at any time.
+    /// True if an image of the same signature may be kept: glass without a revision may change at any time.
     fn is_certain(&self) -> bool {
         self.scene.glass != Some(None)
     }
 
-    /// Whether the other differs in the camera's place and lens at most.
+    /// True if the other differs in the camera's place and lens at most.
     fn differs_by_camera_only(&self, other: &Self) -> bool {
         let kind = |camera: &Camera| {
             (
@@ -154,7 +154,7 @@ impl History {
         self.prepared = Some(seen_from);
     }
 
-    /// Where the frame recorded last was seen from; this one, where it is the first.
+    /// The viewpoint of the frame recorded last; of this one, where it is the first.
     pub(crate) fn before(&self) -> Option<Viewpoint> {
         self.recorded.or(self.prepared)
     }

@@ -1,20 +1,20 @@
-//! What a view keeps of earlier frames, as plain data.
+//! Options of temporal reuse, as plain data.
 
-/// What a view keeps of earlier frames.
+/// Options of keeping pixels from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reuse {
-    /// Frames in a row that keep what is not stale; then all pixels are computed. `None`: no limit.
+    /// Frames in a row that keep pixels that are not stale; then all pixels are computed. `None`: no limit.
     pub frames: Option<u32>,
-    /// How stale pixels are found.
+    /// The method that finds stale pixels.
     pub mask: ReuseMask,
-    /// What may be wrong with a pixel that is kept while the camera moves, over the brightest value about it (> 0); `None`: a
+    /// Tolerated error of a pixel that is kept while the camera moves, over the brightest value about it (> 0); `None`: a
     /// camera that moves makes all pixels stale.
     pub reproject: Option<f32>,
-    /// What the picture shows.
+    /// The contents of the image.
     pub show: ReuseShow,
 }
 
-/// How stale pixels are found.
+/// A method that finds stale pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReuseMask {
     /// By comparing depth and shadow map with those of the frame before: exact.
@@ -23,14 +23,14 @@ pub enum ReuseMask {
     Geometry,
 }
 
-/// What the picture shows.
+/// The contents of the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReuseShow {
     /// The in-scattered light.
     Light,
     /// The pixels that were computed, 1 a light, in red.
     Mask,
-    /// How long ago each was: blue now, then from green to red in 32 frames; a sum over the lights.
+    /// The age of each: blue now, then from green to red in 32 frames; a sum over the lights.
     Age,
 }
 

@@ -1,11 +1,13 @@
 //! A light's passes about any technique, kept from frame to frame.
 
 use super::{
-    gpu,
+    frame::Frame,
     history::{History, Signature},
     options::{Reuse, ReuseMask},
+    wrap::wrap,
 };
 use crate::{
+    gpu::pool::Owner,
     gpu::{pass::LightPasses, program::STENCIL_FORMAT, scope::LightScope},
     techniques::{GpuMethod, Technique},
 };
@@ -26,7 +28,7 @@ pub(crate) fn passes(
         ReuseMask::Change => Vec::new(),
         ReuseMask::Geometry => history.moved(scope.index, inputs.occluders.unwrap_or_default()),
     };
-    let frame = gpu::Frame {
+    let frame = Frame {
         reuse,
         generations: history.generations(scope.index, signature),
         reach: method.reach(),
@@ -34,7 +36,7 @@ pub(crate) fn passes(
         moved: &moved,
     };
     let attachment = |scope: &mut LightScope<'_>, name, format| {
-        let key = (Some(scope.index), name);
+        let key = (Owner::Light(scope.index), name);
         scope.pool.attachment(scope.device, key, scope.size, format)
     };
     let output = scope.shared.output;
@@ -44,5 +46,5 @@ pub(crate) fn passes(
     let with_lights_before = std::mem::replace(&mut scope.frame_group, alone);
     scope.stencil = Some(stencil);
     let own = method.passes(&mut scope);
-    gpu::wrap(own, &frame, (sum, with_lights_before), &mut scope)
+    wrap(own, &frame, (sum, with_lights_before), &mut scope)
 }

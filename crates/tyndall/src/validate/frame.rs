@@ -2,9 +2,7 @@
 
 use super::require::{Checked, direction, finite, not_negative, not_parallel, require};
 use crate::{
-    frame::{
-        Camera, DepthRange, Emitter, Frame, Light, Medium, Phase, Projection, ShadowProjection,
-    },
+    frame::{Camera, DepthRange, Emitter, Frame, Light, Medium, Projection, ShadowProjection},
     light::texture::TextureMapping,
 };
 
@@ -92,12 +90,12 @@ fn medium(medium: &Medium) -> Checked {
             &format!("medium.components[{i}].sigma_a"),
             component.sigma_a,
         )?;
-        if let Phase::HenyeyGreenstein { g } = component.phase {
+        for (param, value) in component.phase.params() {
             require(
-                g.abs() < 1.0,
-                format!("medium.components[{i}].phase.g"),
-                "a number between -1 and 1, both excluded",
-                g,
+                (param.allows)(value),
+                format!("medium.components[{i}].phase.{}", param.key),
+                param.range,
+                value,
             )?;
         }
     }
@@ -108,10 +106,10 @@ fn light(field: &str, light: &Light) -> Checked {
     let name = |key: &str| format!("{field}.emitter.{key}");
     match light.emitter {
         Emitter::Directional {
-            direction: way,
+            direction: travel,
             illuminance,
         } => {
-            direction(&name("direction"), way)?;
+            direction(&name("direction"), travel)?;
             not_negative(&name("illuminance"), illuminance)?;
         }
         Emitter::Point {

@@ -3,7 +3,7 @@
 use super::require::{Checked, require};
 use crate::{error::PrepareError, frame::Frame, inputs::GlassMap, integrate::CpuInputs};
 
-/// The longest side of a picture or texture [pixels] that is taken at all, so that sizes never overflow.
+/// The longest side of an image or texture [pixels] that is accepted at all, so that sizes never overflow.
 const MAX_SIDE: u32 = 1 << 16;
 
 /// Checks that one input set a light was given, and what each light needs.
@@ -46,14 +46,14 @@ pub(crate) fn light_inputs(
     Ok(())
 }
 
-/// Which pictures of a light were given.
+/// The textures of a light that were given.
 pub(crate) struct GivenInputs {
     pub(crate) shadow_map: bool,
     pub(crate) glass: bool,
     pub(crate) texture: bool,
 }
 
-/// Checks the pictures of the CPU backend.
+/// Checks the textures of the CPU backend.
 pub(crate) fn cpu_inputs(frame: &Frame, inputs: &CpuInputs<'_>) -> Checked {
     let pixels = area("inputs.size", inputs.size)?;
     size("inputs.depth", pixels, inputs.depth.len())?;

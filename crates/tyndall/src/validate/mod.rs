@@ -1,4 +1,4 @@
-//! What a frame and its inputs must be. Every refusal names the field, what was expected and what was found.
+//! Checks of a frame and its inputs. Every refusal names the field, what was expected and what was found.
 
 mod frame;
 #[cfg(feature = "gpu")]

@@ -1,4 +1,4 @@
-//! A stage on the GPU: its pictures as textures, and the effect's output read back.
+//! A stage on the GPU: its inputs as textures, and the effect's output read back.
 
 use std::sync::OnceLock;
 
@@ -28,7 +28,7 @@ pub(crate) fn effect(gpu: &TestDevice) -> Effect {
     Effect::new(&gpu.device, &options).expect("a blendable target")
 }
 
-/// A stage's pictures on the GPU.
+/// A stage's textures on the GPU.
 pub(crate) struct Uploaded {
     pub(crate) depth: wgpu::TextureView,
     lights: Vec<[Option<wgpu::TextureView>; 3]>,
@@ -39,7 +39,7 @@ impl Uploaded {
         Self::sized(SIZE, gpu, stage)
     }
 
-    /// Of a stage of this size [pixels].
+    /// The textures of a stage of this size [pixels].
     pub(crate) fn sized(size: [u32; 2], gpu: &TestDevice, stage: &Stage) -> Self {
         let light = |(light, pictures): (&tyndall::frame::Light, &StageLight)| {
             let faces = match light.shadow {

@@ -21,12 +21,12 @@ pub(crate) mod gpu;
 #[cfg(feature = "gpu")]
 pub(crate) mod run;
 
-/// Width and height of the pictures [pixels].
+/// Width and height of the images [pixels].
 pub(crate) const SIZE: [u32; 2] = [48, 36];
 const MAP: u32 = 64;
 const GLASS_LAYERS: u32 = 2;
 
-/// A frame and its pictures.
+/// A frame and its textures.
 #[derive(Clone)]
 pub(crate) struct Stage {
     pub(crate) name: String,
@@ -35,7 +35,7 @@ pub(crate) struct Stage {
     pub(crate) lights: Vec<StageLight>,
 }
 
-/// The pictures of one light.
+/// The textures of one light.
 #[derive(Clone)]
 pub(crate) struct StageLight {
     pub(crate) shadow_map: Option<ShadowMap>,
@@ -141,6 +141,27 @@ pub(crate) fn media() -> [(&'static str, Medium); 4] {
     .map(|(name, components)| (name, Medium { components }))
 }
 
+/// Media of the phase functions that [`media`] does not have: haze, dust, and the droplets of a fog.
+fn fogs() -> [(&'static str, Medium); 3] {
+    let haze = MediumComponent {
+        sigma_s: [0.03, 0.05, 0.08],
+        sigma_a: [0.01; 3],
+        phase: Phase::CornetteShanks { g: 0.5 },
+    };
+    let dust = MediumComponent {
+        phase: Phase::Draine { g: 0.6, alpha: 0.5 },
+        ..haze
+    };
+    let droplets = MediumComponent::fog_droplets([0.06; 3], [0.003; 3], 10.0);
+    let droplets = droplets.expect("a diameter of the fit");
+    [
+        ("haze", vec![haze]),
+        ("dust", vec![dust]),
+        ("droplets", droplets.to_vec()),
+    ]
+    .map(|(name, components)| (name, Medium { components }))
+}
+
 /// Cameras in a world of some ten metres about the origin; `TARGET` is where the local lights are.
 pub(crate) fn cameras() -> [(&'static str, Camera); 6] {
     let aspect = SIZE[0] as f32 / SIZE[1] as f32;
@@ -169,7 +190,7 @@ pub(crate) fn cameras() -> [(&'static str, Camera); 6] {
 
 const LIGHT: Vec3 = Vec3::new(-0.6, 2.2, -2.0);
 
-/// Lights with their shadow projections and picture placements.
+/// Lights with their shadow projections and texture placements.
 fn lights() -> Vec<(&'static str, Light)> {
     let direction = Vec3::new(0.3, -0.8, 0.4).normalize();
     let sun = Emitter::Directional {
@@ -313,7 +334,7 @@ pub(crate) fn light_texture() -> LightTexture {
     }
 }
 
-/// The pictures a light asks for.
+/// The textures a light asks for.
 pub(crate) fn pictures(light: &Light, with_glass: bool) -> StageLight {
     let (faces, reversed) = match light.shadow {
         Some(ShadowProjection::Cube { reversed_depth, .. }) => (6, reversed_depth),
@@ -382,6 +403,24 @@ pub(crate) fn stages() -> Vec<Stage> {
     stages
 }
 
+/// Sun, lamp and spot in each of the fogs, seen towards the light and from beside it.
+pub(crate) fn fog_stages() -> Vec<Stage> {
+    let (fogs, cameras) = (fogs(), cameras());
+    let mut stages = Vec::new();
+    for (light_name, light) in lights() {
+        if !["sun", "lamp", "spot"].contains(&light_name) {
+            continue;
+        }
+        for (j, (fog_name, medium)) in fogs.iter().enumerate() {
+            let (camera_name, camera) = &cameras[[0, 2, 0][j]];
+            let name = format!("{light_name}; {camera_name}; {fog_name}");
+            stages.push(stage(name, *camera, medium.clone(), light, false));
+        }
+    }
+    assert_eq!(stages.len(), 9);
+    stages
+}
+
 /// The stages whose camera has an eye.
 pub(crate) fn perspective_stages() -> Vec<Stage> {
     let mut stages = stages();
@@ -389,7 +428,7 @@ pub(crate) fn perspective_stages() -> Vec<Stage> {
     stages
 }
 
-/// Lights that shine into the camera: stages with their epipole within the picture, and the way to it.
+/// Lights that shine into the camera: stages with their epipole within the image, and the direction to it.
 pub(crate) fn epipole_stages() -> Vec<(Stage, Vec3)> {
     let mut stages = stages();
     stages.retain(|s| s.name.contains("; towards the light; ") && s.lights[0].texture.is_none());

@@ -15,7 +15,7 @@ pub(crate) struct Run<'a> {
     effect: &'a Effect,
     view: EffectView,
     size: [u32; 2],
-    /// Of all shadow maps.
+    /// The revision of all shadow maps.
     pub(crate) revision: Option<u64>,
 }
 
@@ -24,7 +24,7 @@ impl<'a> Run<'a> {
         Self::sized(SIZE, gpu, effect, reuse)
     }
 
-    /// Of another size than the stages of this folder.
+    /// A run of another size than the stages of this folder.
     pub(crate) fn sized(
         size: [u32; 2],
         gpu: &'a TestDevice,

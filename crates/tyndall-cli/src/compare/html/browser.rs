@@ -68,7 +68,7 @@ impl Browser {
         answer["value"].clone()
     }
 
-    /// What a function's body returns.
+    /// Runs a function's body and gives its result.
     fn script(&self, body: &str) -> Value {
         self.post("/execute/sync", &json!({ "script": body, "args": [] }))
     }
@@ -77,7 +77,7 @@ impl Browser {
         self.script(body).as_str().unwrap().to_owned()
     }
 
-    /// Where a share of an element's width and height is in the window [pixels].
+    /// Position in the window of a share of an element's width and height [pixels].
     fn point(&self, id: &str, [x, y]: [f64; 2]) -> [i64; 2] {
         let point = self.script(&format!(
             "const b = document.getElementById('{id}').getBoundingClientRect();
@@ -116,7 +116,7 @@ impl Browser {
         );
     }
 
-    /// What the divider says of itself, and where the right picture is cut [percent].
+    /// The divider's own value, and the cut of the right picture [percent].
     fn divider(&self) -> [f64; 2] {
         let found = self.script(
             "return [Number(divider.getAttribute('aria-valuenow')),
@@ -184,7 +184,7 @@ fn the_page_works_in_a_browser() {
         &json!({ "url": format!("file://{}", file.display()) }),
     );
     browser.script(
-        "document.getElementById('stage').scrollIntoView({ block: 'start', behavior: 'instant' })",
+        "document.getElementById('drawn').scrollIntoView({ block: 'start', behavior: 'instant' })",
     );
 
     divider_moves(&browser);

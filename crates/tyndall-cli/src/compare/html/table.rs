@@ -1,17 +1,17 @@
 //! The table of costs and errors.
 
-use super::{
-    super::{Report, Row},
-    template::Html,
+use super::template::Html;
+use crate::{
+    compare::report::{Report, Row},
+    measure::Spread,
 };
-use crate::measure::Spread;
 
 /// A column of numbers: smaller is better.
 struct Column {
     title: &'static str,
-    /// What it means.
+    /// Its meaning.
     about: &'static str,
-    /// What it is sorted and judged by.
+    /// The number that rows are sorted and judged by.
     value: fn(&Row) -> Option<f64>,
     text: fn(&Row) -> String,
 }

@@ -4,16 +4,21 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use half::f16;
 use serde_json::{Value, json};
 
-use super::{
-    super::{Comparison, ErrorMap, error_map, files, files::FileError},
-    template::Html,
+use super::template::Html;
+use crate::{
+    compare::{
+        error::FileError,
+        error_map::{self, ErrorMap},
+        png::{developed, png},
+        report::Comparison,
+    },
+    picture::Picture,
 };
-use crate::picture::Picture;
 
 /// Characters of embedded data that a page may have.
 const BUDGET: usize = 18_000_000;
 
-/// What the script compares.
+/// Everything that the script compares.
 pub(super) struct Viewer {
     /// Width and height [pixels].
     size: [u32; 2],
@@ -87,7 +92,7 @@ impl Viewer {
         })
     }
 
-    /// What isn't embedded, or not whole, in words.
+    /// Says in words which pictures and values aren't embedded.
     pub(super) fn notes(&self) -> impl Iterator<Item = String> {
         let pictures = self.left_out.iter().map(|name| {
             format!(
@@ -129,15 +134,15 @@ fn shown(picture: &Picture, reference: &Picture, ev: f32) -> Result<Vec<Shown>, 
     let errors = error_map::relative_errors(picture, reference);
     let mut shown = vec![in_scatter(picture, ev)?];
     for map in ErrorMap::ALL {
-        let png = files::png(&map.colors(&errors), picture.size)?;
-        shown.push(Shown::new(map.title(), &png));
+        let bytes = png(&map.colors(&errors), picture.size)?;
+        shown.push(Shown::new(map.title(), &bytes));
     }
     Ok(shown)
 }
 
 fn in_scatter(picture: &Picture, ev: f32) -> Result<Shown, FileError> {
-    let png = files::developed(picture, ev)?;
-    Ok(Shown::new("In-scatter", &png))
+    let bytes = developed(picture, ev)?;
+    Ok(Shown::new("In-scatter", &bytes))
 }
 
 impl Shown {

@@ -3,7 +3,7 @@
 use tyndall::gpu::PassTimer;
 use wgpu::{CommandEncoder, Device, Texture, TextureFormat, TextureUsages, TextureView};
 
-/// The engine's picture.
+/// The engine's colour texture.
 pub(super) struct ColorTarget {
     pub(super) texture: Texture,
     pub(super) view: TextureView,

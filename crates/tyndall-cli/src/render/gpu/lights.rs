@@ -1,4 +1,4 @@
-//! What belongs to each light on the GPU.
+//! Textures and buffers of each light on the GPU.
 
 use std::sync::Arc;
 
@@ -13,21 +13,22 @@ use tyndall_scene::gpu::{
 use wgpu::{Buffer, TextureView};
 
 use crate::{
+    backend::Gpu,
     failure::Failure,
-    render::{Gpu, Needs},
-    setup::{LazyTracer, Setup},
+    load::{LazyTracer, ShotFrame},
+    render::needs::Needs,
 };
 
 /// Points of the scene's surfaces that maps of a rectangular light are made of.
 const CLOUD: u32 = 1 << 19;
 
-/// What belongs to one light.
+/// Textures and buffers of one light.
 pub(super) struct LightTargets {
     pub(super) shadow_map: Option<ShadowMapTarget>,
     pub(super) glass: Option<GlassMapTarget>,
-    /// The picture the light shines through, and what it is of.
+    /// The texture the light shines through, and the texels that were uploaded to it.
     texture: Option<(TextureView, Arc<LightTexture>)>,
-    /// Of a rectangular light: the scene's surfaces, and the texels a side of a sample's map.
+    /// Points of the scene's surfaces, and the texels a side of a sample's map; rectangular lights only.
     points: Option<(Buffer, u32)>,
     /// The scene that the points are of.
     drawn: Arc<LazyTracer>,
@@ -35,56 +36,56 @@ pub(super) struct LightTargets {
 
 impl LightTargets {
     pub(super) fn new(
-        setup: &Setup,
+        shot_frame: &ShotFrame,
         index: usize,
         gpu: &Gpu,
         renderer: &SceneRenderer,
         needs: Needs,
     ) -> Result<Self, Failure> {
         let device = &gpu.device;
-        let (light, extra) = (&setup.frame.lights[index], &setup.lights[index]);
-        let projection = light.shadow.as_ref().filter(|_| needs.light_maps);
+        let (light, extra) = (&shot_frame.frame.lights[index], &shot_frame.lights[index]);
+        let projection = light.shadow.as_ref().filter(|_| needs.shadow_maps);
         let shadow_map = projection
             .map(|projection| ShadowMapTarget::new(device, projection, extra.map_size))
             .transpose()
             .map_err(Failure::device)?;
         let glass = shadow_map
             .as_ref()
-            .filter(|_| renderer.has_tinted_glass())
+            .filter(|_| needs.glass && renderer.has_tinted_glass())
             .map(|shadow_map| GlassMapTarget::new(device, shadow_map))
             .transpose()
             .map_err(Failure::device)?;
         Ok(Self {
-            points: points(setup, index, gpu, needs),
-            drawn: Arc::clone(&setup.tracer),
+            points: points(shot_frame, index, gpu, needs),
+            drawn: Arc::clone(&shot_frame.tracer),
             shadow_map,
             glass,
-            texture: texture(setup, index, gpu)?,
+            texture: texture(shot_frame, index, gpu)?,
         })
     }
 
-    /// Takes new points where the scene has moved, and another picture where there is one.
+    /// Takes new points where the scene has moved, and another texture where there is one.
     pub(super) fn follow(
         &mut self,
-        setup: &Setup,
+        shot_frame: &ShotFrame,
         index: usize,
         gpu: &Gpu,
         needs: Needs,
     ) -> Result<(), Failure> {
         let held = self.texture.as_ref().map(|(_, of)| Arc::as_ptr(of));
-        if held != setup.lights[index].texture.as_ref().map(Arc::as_ptr) {
-            self.texture = texture(setup, index, gpu)?;
+        if held != shot_frame.lights[index].texture.as_ref().map(Arc::as_ptr) {
+            self.texture = texture(shot_frame, index, gpu)?;
         }
-        if !Arc::ptr_eq(&self.drawn, &setup.tracer) {
-            self.points = points(setup, index, gpu, needs);
-            self.drawn = Arc::clone(&setup.tracer);
+        if !Arc::ptr_eq(&self.drawn, &shot_frame.tracer) {
+            self.points = points(shot_frame, index, gpu, needs);
+            self.drawn = Arc::clone(&shot_frame.tracer);
         }
         Ok(())
     }
 
     /// Whether there is a shadow map where the light needs one.
     pub(super) fn suits(&self, light: &Light, needs: Needs) -> bool {
-        self.shadow_map.is_some() == (light.shadow.is_some() && needs.light_maps)
+        self.shadow_map.is_some() == (light.shadow.is_some() && needs.shadow_maps)
     }
 
     pub(super) fn bytes(&self) -> u64 {
@@ -94,13 +95,13 @@ impl LightTargets {
     }
 }
 
-/// The picture that the light shines through in this frame, uploaded.
+/// The texture that the light shines through in this frame, uploaded.
 fn texture(
-    setup: &Setup,
+    shot_frame: &ShotFrame,
     index: usize,
     gpu: &Gpu,
 ) -> Result<Option<(TextureView, Arc<LightTexture>)>, Failure> {
-    let Some(texture) = &setup.lights[index].texture else {
+    let Some(texture) = &shot_frame.lights[index].texture else {
         return Ok(None);
     };
     let uploaded = upload_light_texture(&gpu.device, &gpu.queue, texture);
@@ -110,15 +111,15 @@ fn texture(
     Ok(Some((view, Arc::clone(texture))))
 }
 
-/// The scene's surfaces, where the light is a rectangle.
-fn points(setup: &Setup, index: usize, gpu: &Gpu, needs: Needs) -> Option<(Buffer, u32)> {
-    let is_area = matches!(setup.frame.lights[index].emitter, Emitter::Rect { .. });
-    let cloud = (is_area && needs.light_maps).then(|| setup.tracer.point_cloud(CLOUD))?;
-    let side = setup.lights[index].map_size[0];
+/// Points of the scene's surfaces, where the light is a rectangle and a technique reads them.
+fn points(shot_frame: &ShotFrame, index: usize, gpu: &Gpu, needs: Needs) -> Option<(Buffer, u32)> {
+    let is_area = matches!(shot_frame.frame.lights[index].emitter, Emitter::Rect { .. });
+    let cloud = (is_area && needs.points).then(|| shot_frame.tracer.point_cloud(CLOUD))?;
+    let side = shot_frame.lights[index].map_size[0];
     (!cloud.is_empty()).then(|| (upload_point_cloud(&gpu.device, &cloud), side))
 }
 
-/// The lights' pictures; `occluders` are the same for all of them.
+/// The lights' inputs; `occluders` are the same for all of them.
 pub(super) fn light_inputs<'a>(
     lights: &'a [LightTargets],
     occluders: Option<&'a [Occluder<'a>]>,

@@ -42,12 +42,12 @@ impl Timestamps {
         }))
     }
 
-    /// Of passes that nobody times.
+    /// Times nothing.
     pub(crate) fn none() -> Self {
         Self(None)
     }
 
-    /// What the next passes are timed by.
+    /// The timer of the next passes.
     pub(crate) fn timer(&mut self) -> Option<&mut PassTimer> {
         self.0.as_mut().map(|timed| &mut timed.timer)
     }

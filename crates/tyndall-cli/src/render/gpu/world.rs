@@ -1,11 +1,9 @@
-//! What an engine has before volumetric light comes in: the scene on the device, a depth buffer, shadow maps.
+//! The scene on the device, its depth buffer and shadow maps: what an engine has before volumetric light comes in.
 
 use std::cell::OnceCell;
 
 use glam::Affine3A;
-use tyndall::{
-    LightInputs, Occluder, SurfaceShadows, frame::Light, gpu::PassTimer, temporal::Reuse,
-};
+use tyndall::{LightInputs, Occluder, SurfaceShadows, frame::Light, gpu::PassTimer};
 use tyndall_scene::gpu::{
     GBufferTargets, SceneOccluders, SceneRenderer, SurfaceLights,
     readback::{self, ReadbackError},
@@ -14,9 +12,13 @@ use wgpu::{CommandEncoder, TextureFormat, TextureView, TextureViewDescriptor};
 
 use super::lights::{LightTargets, light_inputs};
 use crate::{
+    backend::Gpu,
     failure::Failure,
-    render::{Buffers, Gpu, LightMaps, Needs, reads_occluders},
-    setup::Setup,
+    load::ShotFrame,
+    render::{
+        buffers::{Buffers, LightMaps},
+        needs::Needs,
+    },
 };
 
 /// An uploaded scene, and the textures that its camera and its lights are drawn on.
@@ -25,7 +27,7 @@ pub(crate) struct World {
     g_buffer: GBufferTargets,
     lights: Vec<LightTargets>,
     occluders: OnceCell<SceneOccluders>,
-    /// What the lights' maps show, and a number that changes with it.
+    /// The content of the lights' maps, and a number that changes with it.
     shown: Shown,
     revision: u64,
 }
@@ -38,11 +40,11 @@ struct Shown {
 }
 
 impl Shown {
-    fn new(setup: &Setup) -> Self {
-        let nodes = setup.scene.nodes.iter();
+    fn new(shot_frame: &ShotFrame) -> Self {
+        let nodes = shot_frame.scene.nodes.iter();
         Self {
             nodes: nodes.map(|node| node.parent_from_local).collect(),
-            lights: setup.frame.lights.clone(),
+            lights: shot_frame.frame.lights.clone(),
         }
     }
 }
@@ -50,42 +52,47 @@ impl Shown {
 impl World {
     /// Uploads and allocates; `format` is that of the target that surfaces are drawn on.
     pub(crate) fn new(
-        setup: &Setup,
+        shot_frame: &ShotFrame,
         gpu: &Gpu,
         needs: Needs,
         format: TextureFormat,
     ) -> Result<Self, Failure> {
         let Gpu { device, queue, .. } = gpu;
-        let renderer = SceneRenderer::new(device, queue, &setup.scene, format);
+        let renderer = SceneRenderer::new(device, queue, &shot_frame.scene, format);
         let renderer = renderer.map_err(Failure::device)?;
-        let lights = (0..setup.lights.len())
-            .map(|index| LightTargets::new(setup, index, gpu, &renderer, needs))
+        let lights = (0..shot_frame.lights.len())
+            .map(|index| LightTargets::new(shot_frame, index, gpu, &renderer, needs))
             .collect::<Result<_, _>>()?;
         Ok(Self {
-            g_buffer: GBufferTargets::new(device, setup.size).map_err(Failure::device)?,
+            g_buffer: GBufferTargets::new(device, shot_frame.size).map_err(Failure::device)?,
             renderer,
             lights,
             occluders: OnceCell::new(),
-            shown: Shown::new(setup),
+            shown: Shown::new(shot_frame),
             revision: 0,
         })
     }
 
-    /// Moves the nodes to where they are in this setup, which differs from the one given first in the places of nodes,
-    /// camera and lights, and in the lights' pictures alone.
-    pub(crate) fn place(&mut self, setup: &Setup, gpu: &Gpu, needs: Needs) -> Result<(), Failure> {
-        self.renderer.place(&gpu.queue, &setup.scene);
-        let shown = Shown::new(setup);
+    /// Moves the nodes to where they are in this frame, which differs from the one given first in the places of nodes,
+    /// camera and lights, and in the lights' textures alone.
+    pub(crate) fn place(
+        &mut self,
+        shot_frame: &ShotFrame,
+        gpu: &Gpu,
+        needs: Needs,
+    ) -> Result<(), Failure> {
+        self.renderer.place(&gpu.queue, &shot_frame.scene);
+        let shown = Shown::new(shot_frame);
         if self.shown != shown {
             self.shown = shown;
             self.revision += 1;
         }
         for (index, targets) in self.lights.iter_mut().enumerate() {
             // A light that turns towards the scene or away from it gets or loses its map.
-            if !targets.suits(&setup.frame.lights[index], needs) {
-                *targets = LightTargets::new(setup, index, gpu, &self.renderer, needs)?;
+            if !targets.suits(&shot_frame.frame.lights[index], needs) {
+                *targets = LightTargets::new(shot_frame, index, gpu, &self.renderer, needs)?;
             }
-            targets.follow(setup, index, gpu, needs)?;
+            targets.follow(shot_frame, index, gpu, needs)?;
         }
         Ok(())
     }
@@ -93,11 +100,11 @@ impl World {
     /// Records every light's shadow map and coloured glass.
     pub(crate) fn draw_light_maps(
         &self,
-        setup: &Setup,
+        shot_frame: &ShotFrame,
         encoder: &mut CommandEncoder,
         mut timer: Option<&mut PassTimer>,
     ) {
-        for (light, targets) in setup.frame.lights.iter().zip(&self.lights) {
+        for (light, targets) in shot_frame.frame.lights.iter().zip(&self.lights) {
             let (Some(projection), Some(shadow_map)) = (&light.shadow, &targets.shadow_map) else {
                 continue;
             };
@@ -119,19 +126,19 @@ impl World {
     /// Records what the camera sees.
     pub(crate) fn draw_g_buffer(
         &self,
-        setup: &Setup,
+        shot_frame: &ShotFrame,
         encoder: &mut CommandEncoder,
         timer: Option<&mut PassTimer>,
     ) {
-        let camera = &setup.frame.camera;
+        let camera = &shot_frame.frame.camera;
         self.renderer
             .g_buffer(encoder, &self.g_buffer, camera, timer);
     }
 
-    /// Records the lit surfaces on `target`; `visibility` is what direct light is multiplied by, light by light.
+    /// Records the lit surfaces on `target`; direct light is multiplied by `visibility`, light by light.
     pub(crate) fn draw_surfaces(
         &self,
-        setup: &Setup,
+        shot_frame: &ShotFrame,
         encoder: &mut CommandEncoder,
         target: &TextureView,
         visibility: &[Option<&TextureView>],
@@ -141,16 +148,22 @@ impl World {
             inputs: &self.light_inputs(None),
             visibility,
         };
-        self.renderer
-            .shade(encoder, target, &self.g_buffer, &setup.frame, lights, timer);
+        self.renderer.shade(
+            encoder,
+            target,
+            &self.g_buffer,
+            &shot_frame.frame,
+            lights,
+            timer,
+        );
     }
 
-    /// What the camera sees.
+    /// Depth, normals and materials that the camera sees.
     pub(crate) fn g_buffer(&self) -> &GBufferTargets {
         &self.g_buffer
     }
 
-    /// What shadows on the surfaces that the camera sees are made of.
+    /// Inputs of shadows on the surfaces that the camera sees.
     pub(crate) fn surface_shadows(&self) -> SurfaceShadows {
         let normals = self.g_buffer.normal();
         SurfaceShadows {
@@ -166,28 +179,24 @@ impl World {
         light_inputs(&self.lights, occluders, self.revision)
     }
 
-    /// What blocks light, where it is in this setup; nothing where nobody asks. Uploaded when first asked for.
+    /// The scene's triangles, where they are in this frame. Uploaded when first asked for.
     pub(crate) fn occluders(
         &self,
-        setup: &Setup,
-        reuse: Option<&Reuse>,
+        shot_frame: &ShotFrame,
         gpu: &Gpu,
-    ) -> Result<Option<Vec<Occluder<'_>>>, Failure> {
-        if !reads_occluders(&super::super::technique(&setup.techniques), reuse) {
-            return Ok(None);
-        }
+    ) -> Result<Vec<Occluder<'_>>, Failure> {
         let uploaded = match self.occluders.get() {
             Some(uploaded) => uploaded,
             None => {
-                let uploaded = SceneOccluders::new(&gpu.device, &setup.scene);
+                let uploaded = SceneOccluders::new(&gpu.device, &shot_frame.scene);
                 let uploaded = uploaded.map_err(Failure::device)?;
                 self.occluders.get_or_init(|| uploaded)
             }
         };
-        Ok(Some(uploaded.places(&setup.scene)))
+        Ok(uploaded.places(&shot_frame.scene))
     }
 
-    /// What the CPU needs to work on the very same pictures. Waits for the device.
+    /// Reads depth buffer and light maps back, for the CPU to work on the very same. Waits for the device.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Buffers, Failure> {
         let Gpu { device, queue, .. } = gpu;
         let depth = readback::texture_f32(device, queue, self.g_buffer.depth());

@@ -7,8 +7,9 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::{
+    camera::CameraRays,
     epipolar::{
-        cells,
+        Resolution, rectify,
         tree::{LIT, Node, UNKNOWN},
     },
     frame::{Camera, Emitter, Light, Projection, ShadowProjection},
@@ -16,7 +17,7 @@ use crate::{
     light::LightModel,
     shadow::Shadows,
 };
-use glam::{Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 use tyndall_testkit::samples::in_box;
 
 const SIZE: [u32; 2] = [64, 48];
@@ -30,14 +31,14 @@ struct Case {
     map: ShadowMap,
 }
 
-/// Where the light is, seen from the eye.
+/// Place of the light, seen from the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Placing {
     Anywhere,
-    /// The epipole is in the picture.
+    /// The epipole is in the image.
     Ahead,
     Behind,
-    /// The sun's epipole is at infinity, the lamp's far beside the picture.
+    /// The sun's epipole is at infinity, the lamp's far beside the image.
     Across,
     /// The lamp is a few centimetres from the eye.
     Near,
@@ -155,19 +156,20 @@ impl Case {
     }
 }
 
-/// The sun, a lamp with a cube, and a spot of any width, the way each shines.
+/// The sun, a lamp with a cube, and a spot of any width, and the direction in which each shines.
 fn lights(
     kind: usize,
     position: Vec3,
-    way: Vec3,
+    heading: Vec3,
     width: f32,
     reversed_depth: bool,
 ) -> (Emitter, ShadowProjection) {
     use glam::camera::rh::{proj::directx, view::look_to_mat4};
-    let across = way.any_orthonormal_vector();
-    let single = |clip_from_view: Mat4, from: Vec3, way: Vec3| ShadowProjection::Single {
-        clip_from_world: (clip_from_view * look_to_mat4(from, way, way.any_orthonormal_vector()))
-            .to_cols_array_2d(),
+    let across = heading.any_orthonormal_vector();
+    let single = |clip_from_view: Mat4, from: Vec3, heading: Vec3| ShadowProjection::Single {
+        clip_from_world: (clip_from_view
+            * look_to_mat4(from, heading, heading.any_orthonormal_vector()))
+        .to_cols_array_2d(),
         reversed_depth,
     };
     let depths = |near: f32, far: f32| {
@@ -184,10 +186,10 @@ fn lights(
             let [near, far] = depths(0.5, 40.0);
             let matrix = directx::orthographic(-half, half, -half, half, near, far);
             let emitter = Emitter::Directional {
-                direction: way.to_array(),
+                direction: heading.to_array(),
                 illuminance: [1.0; 3],
             };
-            (emitter, single(matrix, -20.0 * way, way))
+            (emitter, single(matrix, -20.0 * heading, heading))
         }
         1 => (
             Emitter::Point {
@@ -203,17 +205,17 @@ fn lights(
         _ => {
             // It need not shine at the eye.
             let outer = 0.7 + 0.6 * width;
-            let way = (way + width * across).normalize();
+            let heading = (heading + width * across).normalize();
             let [near, far] = depths(0.1, 25.0);
             let matrix = directx::perspective(2.0 * outer + 0.05, 1.0, near, far);
             let emitter = Emitter::Spot {
                 position: position_,
-                direction: way.to_array(),
+                direction: heading.to_array(),
                 intensity: [1.0; 3],
                 inner: 0.0,
                 outer,
             };
-            (emitter, single(matrix, position, way))
+            (emitter, single(matrix, position, heading))
         }
     }
 }
@@ -243,7 +245,7 @@ fn blocks(seed: u64, kind: usize, reversed_depth: bool) -> ShadowMap {
     }
 }
 
-/// A picture's point, a share of the way to the far plane, and two more numbers.
+/// An image's point, a share of the distance to the far plane, and two more numbers.
 fn points(seed: usize, count: usize) -> Vec<[f64; 5]> {
     let [width, height] = SIZE.map(|n| n as f32);
     let ranges = [0.0..=width, 0.0..=height, 0.0..=1.0, 0.0..=1.0, 0.0..=1.0];
@@ -272,9 +274,9 @@ fn a_point_is_lit_where_b_is_less_than_s() {
             let point = ray.at(s);
             let (alpha, gamma) = (grid.alpha(&ray), grid.gamma_at(&place, s));
             // The light ray passes through the point.
-            let (origin, way) = grid.light_ray(alpha, gamma);
-            let along = (point - origin).dot(way);
-            let apart = (origin + along * way - point).length();
+            let (origin, travel) = grid.light_ray(alpha, gamma);
+            let along = (point - origin).dot(travel);
+            let apart = (origin + along * travel - point).length();
             // Measured: 3e-13 of up to 90 m.
             assert!(apart < 1e-11, "{}: {apart:e}", case.name);
             // The slice holds the ray.
@@ -301,7 +303,7 @@ fn a_point_is_lit_where_b_is_less_than_s() {
                     case.name
                 );
             }
-            let end = shadows.light_end(origin, way);
+            let end = shadows.light_end(origin, travel);
             if (end - along).abs() > 1e-6 * along.abs().max(1.0) {
                 let [_, shadow] = grid.shadow_range([gamma; 2], [end; 2]);
                 let found = place.b < shadow;
@@ -321,7 +323,7 @@ fn a_point_is_lit_where_b_is_less_than_s() {
     assert!(without < 200, "{without}");
 }
 
-/// How many cells say nothing, and how many hold a narrow range.
+/// Number of cells that say nothing, and of those that hold a narrow range.
 #[derive(Debug, Default)]
 struct Tightness {
     cells: usize,
@@ -356,7 +358,7 @@ fn cells_hold_every_light_ray_in_them() {
             continue;
         };
         let shadows = case.shadows();
-        let trees = cells::trees(&grid, &shadows);
+        let trees = rectify::trees(&grid, &shadows);
         for [_, _, slice, sample, across] in points(i, 1000) {
             let ray = LightRay::in_cell(&grid, &shadows, [slice, sample, across]);
             let leaf = trees[ray.slice].leaf(ray.sample);
@@ -387,8 +389,8 @@ impl LightRay {
         let sample = (place[1] * grid.samples as f64).min(grid.samples as f64 - 1e-9);
         let alpha = start + (slice + place[2]) * step;
         let gamma = grid.gamma_start + sample * grid.gamma_step;
-        let (origin, way) = grid.light_ray(alpha, gamma);
-        let end = shadows.light_end(origin, way);
+        let (origin, travel) = grid.light_ray(alpha, gamma);
+        let end = shadows.light_end(origin, travel);
         let [_, shadow] = grid.shadow_range([gamma; 2], [end; 2]);
         Self {
             slice: slice as usize,

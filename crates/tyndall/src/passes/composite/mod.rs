@@ -1,4 +1,4 @@
-//! The picture behind the medium: background * transmittance + in-scattered light, `composite.wgsl`.
+//! Draws the image behind the medium: background * transmittance + in-scattered light, `composite.wesl`.
 
 use crate::gpu::{program::Raster, scope::Shared};
 

@@ -8,9 +8,9 @@ use crate::gpu::{
 };
 
 /// The most workgroups a dimension may have on every device.
-const MAX_WORKGROUPS: u64 = 65_535;
-/// Words that a workgroup sets at least.
-const WORDS_A_WORKGROUP: u64 = 1024;
+const MAX_WORKGROUPS: u32 = 65_535;
+/// Vectors of four words that a thread sets at least.
+const VECTORS_A_THREAD: u64 = 4;
 
 /// A program that sets the words of a buffer.
 pub(crate) struct Fill(ComputeProgram);
@@ -32,8 +32,9 @@ impl Fill {
         value: u32,
     ) -> Dispatch {
         let uniform = scope.uniform(name, &[value, 0, 0, 0]);
-        let groups = (words.size() / 4).div_ceil(WORDS_A_WORKGROUP);
-        let groups = [groups.clamp(1, MAX_WORKGROUPS) as u32, 1, 1];
+        let threads = (words.size() / 16).div_ceil(VECTORS_A_THREAD);
+        let [groups, ..] = self.0.workgroups([threads as u32, 1, 1]);
+        let groups = [groups.clamp(1, MAX_WORKGROUPS), 1, 1];
         let resources = [uniform.as_entire_binding(), words.as_entire_binding()];
         scope.dispatch(&self.0, &resources, groups)
     }
@@ -41,7 +42,6 @@ impl Fill {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::shader::tests::harness;
     use tyndall_testkit::{device::device_or_skip, wgsl};
     use wgpu::util::DeviceExt;

@@ -10,13 +10,16 @@ use tyndall_testkit::{
 use wgpu::util::DeviceExt;
 
 use super::{
-    gpu::{AreaLight, Maps, NOTHING},
+    area::{AreaLight, Maps},
     twin,
 };
 use crate::{
     frame::Emitter,
     physics::reals,
-    shader::tests::{harness, in_one_group},
+    shader::{
+        constant,
+        tests::{harness, in_one_group},
+    },
 };
 
 /// Stands for the light's module and its bind group: a light that shines along -z.
@@ -24,6 +27,11 @@ const LIGHT: (&str, &str) = (
     "tyndall::light::light",
     "struct TestLight { direction: vec3f }\nconst light = TestLight(vec3f(0.0, 0.0, -1.0));\n",
 );
+
+/// Content of an empty texel.
+fn nothing() -> u32 {
+    constant("IMPERFECT_NOTHING")
+}
 
 fn modules(imports: &str) -> String {
     harness(imports, &[LIGHT], &[])
@@ -43,15 +51,15 @@ fn buffer(gpu: &TestDevice, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu:
 fn the_projection_is_one_to_one_and_its_texels_are_alike() {
     for x in in_box(3, 4000, [const { 0.0..=1.0 }; 2]) {
         let place = DVec2::new(x[0].into(), x[1].into());
-        let way = twin::way(place);
-        assert!(way.z >= -1e-12 && (twin::place(way) - place).length() < 1e-12);
+        let direction = twin::direction(place);
+        assert!(direction.z >= -1e-12 && (twin::place(direction) - place).length() < 1e-12);
     }
     // Solid angles over their mean, 2 pi / side^2: measured 0.35 to 1.64.
     let side = 32;
     let mut range = [f64::INFINITY, 0.0_f64];
     for i in 0..side * side {
         let corner = |x: usize, y: usize| {
-            twin::way(DVec2::new((i % side + x) as f64, (i / side + y) as f64) / side as f64)
+            twin::direction(DVec2::new((i % side + x) as f64, (i / side + y) as f64) / side as f64)
         };
         let diagonals = [corner(1, 1) - corner(0, 0), corner(0, 1) - corner(1, 0)];
         let area = 0.5 * diagonals[0].cross(diagonals[1]).length();
@@ -125,7 +133,7 @@ fn splats_are_those_of_single_points() {
     let [batch] = light.batches(&maps)[..] else {
         panic!("one batch");
     };
-    let texels = vec![NOTHING; (samples * side * side) as usize];
+    let texels = vec![nothing(); (samples * side * side) as usize];
     let storage = wgpu::BufferUsages::STORAGE;
     let buffers = [
         buffer(gpu, bytes_of(&batch), wgpu::BufferUsages::UNIFORM),
@@ -158,7 +166,7 @@ fn splats_are_those_of_single_points() {
         let exact = twin::splat(side as usize, points);
         for (k, exact) in exact.iter().enumerate() {
             let found = found[i * exact_len(side) + k];
-            let found = (found != NOTHING).then(|| f64::from(f32::from_bits(found)));
+            let found = (found != nothing()).then(|| f64::from(f32::from_bits(found)));
             held += usize::from(found.is_some());
             let same = match (found, exact) {
                 (None, None) => true,
@@ -200,7 +208,7 @@ fn holes_are_filled_as_by_the_twin() {
             .collect();
         let words: Vec<u32> = given
             .iter()
-            .map(|d| d.map_or(NOTHING, f32::to_bits))
+            .map(|d| d.map_or(nothing(), f32::to_bits))
             .collect();
         let uniform = buffer(gpu, bytes_of(&batch), wgpu::BufferUsages::UNIFORM);
         let texels = buffer(
@@ -226,7 +234,7 @@ fn holes_are_filled_as_by_the_twin() {
             let exact = twin::pull_push(side as usize, &given);
             for (k, exact) in exact.iter().enumerate() {
                 let found = found[map * exact_len(side) + k];
-                let found = (found != NOTHING).then(|| f64::from(f32::from_bits(found)));
+                let found = (found != nothing()).then(|| f64::from(f32::from_bits(found)));
                 let same = match (found, exact) {
                     (None, None) => true,
                     (Some(a), Some(b)) => (a / b - 1.0).abs() < 1e-6,
@@ -240,9 +248,9 @@ fn holes_are_filled_as_by_the_twin() {
     }
 }
 
-/// What was splat is what is looked up.
+/// Lookups find the points that were splat.
 #[test]
-fn lookups_find_the_texel_of_their_way() {
+fn lookups_find_the_texel_of_their_direction() {
     let Some(gpu) = device_or_skip("lookup.wgsl") else {
         return;
     };
@@ -265,7 +273,7 @@ fn lookups_find_the_texel_of_their_way() {
         }
     };
     let words: Vec<u32> = (0..2 * 32 * 32)
-        .map(|i| held(i).map_or(NOTHING, f32::to_bits))
+        .map(|i| held(i).map_or(nothing(), f32::to_bits))
         .collect();
     let storage = wgpu::BufferUsages::STORAGE;
     let buffers = [
@@ -289,12 +297,12 @@ fn lookups_find_the_texel_of_their_way() {
     let mut looked_up = 0;
     for (input, found) in inputs.iter().zip(found) {
         let tile = input[3] as usize;
-        let way = reals([input[0], input[1], input[2]]);
+        let direction = reals([input[0], input[1], input[2]]);
         let x = reals(samples[tile].tangent);
         let local = DVec3::new(
-            way.dot(x),
-            way.dot(light.normal.cross(x)),
-            way.dot(light.normal),
+            direction.dot(x),
+            direction.dot(light.normal.cross(x)),
+            direction.dot(light.normal),
         );
         let place = twin::place(local);
         if local.z <= 0.0 {

@@ -1,15 +1,15 @@
-//! What the shaders compute, in f64 and texel by texel.
+//! The shaders' twins, in f64 and texel by texel.
 
 use glam::{DVec2, DVec3};
 
-/// The place on the map of a way in a sample's frame, z >= 0.
+/// The place on the map of a direction in a sample's frame, z >= 0.
 pub(crate) fn place(local: DVec3) -> DVec2 {
     let p = local.truncate() / (local.x.abs() + local.y.abs() + local.z);
     0.5 + 0.5 * DVec2::new(p.x + p.y, p.x - p.y)
 }
 
-/// The way, of unit length, of a place.
-pub(crate) fn way(place: DVec2) -> DVec3 {
+/// The unit direction of a place.
+pub(crate) fn direction(place: DVec2) -> DVec3 {
     let q = 2.0 * place - 1.0;
     let p = 0.5 * DVec2::new(q.x + q.y, q.x - q.y);
     p.extend(1.0 - p.x.abs() - p.y.abs()).normalize()

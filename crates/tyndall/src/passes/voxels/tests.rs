@@ -6,7 +6,7 @@ use wgpu::util::DeviceExt;
 use crate::shader::tests::{harness, in_one_group};
 
 use super::{
-    gpu::{scan_columns, scan_groups},
+    scan::{scan_columns, scan_groups},
     twin::{self, Grid},
 };
 

@@ -1,4 +1,4 @@
-//! What the shaders compute, bit by bit.
+//! The shaders' twins, bit by bit.
 
 /// Bits of a grid of side^3.
 pub(crate) struct Grid {
@@ -45,7 +45,7 @@ pub(crate) fn next(row: &[bool], first: usize, is_dark: bool) -> usize {
         .unwrap_or(row.len())
 }
 
-/// How much of the row's first `place` voxels is dark.
+/// The dark part of the row's first `place` voxels [voxels].
 pub(crate) fn dark(row: &[bool], place: f64) -> f64 {
     let share = |i: usize| (place - i as f64).clamp(0.0, 1.0);
     (0..row.len()).filter(|i| row[*i]).map(share).sum()

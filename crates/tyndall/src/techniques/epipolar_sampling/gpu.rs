@@ -1,232 +1,71 @@
-//! The GPU side: the article's stages, each a pass, one WGSL file a stage.
-
-use wgpu::{BindingResource, TextureFormat};
+//! The order of the passes: the article's stages, each a Rust and a WESL file.
 
 use super::{
-    params::{Criterion, Params, Show},
+    coordinates::Coordinates,
+    correct::Correct,
+    finish::Finish,
+    finish_points::FinishPoints,
+    interpolate::Interpolate,
+    march_samples::MarchSamples,
+    params::{Params, Show},
+    refine::Refine,
+    resources::{Image, Resources},
     sizes::{self, Sizes},
+    slice_directions::SliceDirections,
+    slice_ends::SliceEnds,
+    tree::Tree,
+    unwarp::Unwarp,
+    unwarp_finish::UnwarpFinish,
+    upscale::Upscale,
+    view::View,
 };
 use crate::{
-    epipolar::epipole::Epipole,
     error::PrepareError,
     gpu::{
         cache,
-        pass::{Dispatch, FullScreen, LightPasses, Pass, Work, Workgroups},
-        program::{ComputeProgram, Raster, ScreenProgram},
+        pass::{LightPasses, Pass},
         scope::{LightScope, Shared},
     },
-    shader::block,
     techniques::method::{GpuMethod, LightRequest},
 };
 
-/// Invocations a group of the stages over samples, slices and lists.
-const GROUP: u32 = 64;
-/// Invocations a group of refinement.
-const SECTION_GROUP: u32 = 256;
-/// Pixels a group of the stages over pictures.
-const TILE: [u32; 2] = [16, 8];
-/// Levels of the tree that a dispatch builds.
-const LEVELS_A_DISPATCH: u32 = 4;
-/// Lists: samples to march, coarse pixels to correct, pixels to correct.
-const LISTS: u64 = 3;
-/// From the length of one list to the next: that of an indirect draw.
-const COUNT_BYTES: u64 = 16;
-
-block! {
-    /// The shaders' `SamplingParams`.
-    pub(crate) struct ParamsUniform = "SamplingParams" in "tyndall::techniques::epipolar_sampling::common", checked by sampling_params_is_laid_out_as_in_wgsl {
-        pub(crate) epipole: [f32; 3],
-        pub(crate) slices: u32,
-        pub(crate) axis: [f32; 3],
-        pub(crate) samples: u32,
-        pub(crate) initial_step: u32,
-        pub(crate) threshold: f32,
-        pub(crate) criterion: u32,
-        pub(crate) columns: u32,
-        pub(crate) levels: u32,
-        pub(crate) downscale: u32,
-        pub(crate) show: u32,
-        pad: u32,
-        pub(crate) coarse_size: [u32; 2],
-        pub(crate) arc: [f32; 2],
-    }
-}
-
-block! {
-    /// The shaders' `TreeParams`.
-    pub(crate) struct TreeUniform = "TreeParams" in "tyndall::techniques::epipolar_sampling::tree", checked by tree_params_is_laid_out_as_in_wgsl {
-        pub(crate) base: u32,
-        pad: [u32; 3],
-    }
-}
-
-block! {
-    /// The shaders' `CorrectParams`.
-    pub(crate) struct CorrectUniform = "CorrectParams" in "tyndall::techniques::epipolar_sampling::correct", checked by correct_params_is_laid_out_as_in_wgsl {
-        pub(crate) list: u32,
-        pub(crate) downscale: u32,
-        pad: [u32; 2],
-    }
-}
-
-impl ParamsUniform {
-    fn new(params: &Params, sizes: &Sizes, epipole: &Epipole) -> Self {
-        Self {
-            epipole: epipole.place.as_vec3().to_array(),
-            slices: sizes.slices,
-            axis: epipole.axis.as_vec3().to_array(),
-            samples: sizes.samples,
-            initial_step: params.initial_step,
-            threshold: params.threshold as f32,
-            criterion: match params.criterion {
-                Criterion::Depth => 0,
-                Criterion::InScatter => 1,
-            },
-            columns: sizes.columns,
-            levels: sizes.levels,
-            downscale: params.downscale,
-            show: match params.show {
-                Show::Light => 0,
-                Show::Samples => 1,
-                Show::DepthBreaks => 2,
-                Show::Corrected => 3,
-                Show::InScatter => 4,
-            },
-            pad: 0,
-            coarse_size: sizes.coarse,
-            arc: epipole.arc.map(|x| x as f32),
-        }
-    }
-}
-
-/// The technique's programs, one a stage.
+/// The technique's programs, one a pass.
 pub(crate) struct Programs {
-    slice_ends: ComputeProgram,
-    coordinates: ComputeProgram,
-    refine: ComputeProgram,
-    slice_directions: ComputeProgram,
-    tree: ComputeProgram,
-    march_samples: ComputeProgram,
-    correct: ComputeProgram,
-    interpolate: ComputeProgram,
-    unwarp: ComputeProgram,
-    upscale: ComputeProgram,
-    finish: ScreenProgram,
-    unwarp_finish: ScreenProgram,
-    finish_points: ScreenProgram,
-    view: ScreenProgram,
+    slice_ends: SliceEnds,
+    coordinates: Coordinates,
+    refine: Refine,
+    slice_directions: SliceDirections,
+    tree: Tree,
+    march_samples: MarchSamples,
+    interpolate: Interpolate,
+    unwarp: Unwarp,
+    unwarp_finish: UnwarpFinish,
+    correct: Correct,
+    upscale: Upscale,
+    finish: Finish,
+    finish_points: FinishPoints,
+    view: View,
 }
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        macro_rules! program {
-            ($kind:ident, $name:literal) => {
-                $kind::new(
-                    device,
-                    shared,
-                    concat!("techniques::epipolar_sampling::", $name),
-                    $name,
-                )
-            };
-        }
-        let finish_points = "techniques::epipolar_sampling::finish_points";
-        let tree = "techniques::epipolar_sampling::tree";
-        let view = "techniques::epipolar_sampling::view";
         Self {
-            slice_ends: program!(ComputeProgram, "slice_ends").for_all_lights(),
-            coordinates: program!(ComputeProgram, "coordinates").for_all_lights(),
-            refine: program!(ComputeProgram, "refine"),
-            slice_directions: program!(ComputeProgram, "slice_directions"),
-            tree: ComputeProgram::new(device, shared, tree, "sampling_tree"),
-            march_samples: program!(ComputeProgram, "march_samples"),
-            correct: program!(ComputeProgram, "correct"),
-            interpolate: program!(ComputeProgram, "interpolate").for_all_lights(),
-            unwarp: program!(ComputeProgram, "unwarp").for_all_lights(),
-            upscale: program!(ComputeProgram, "upscale").for_all_lights(),
-            finish: program!(ScreenProgram, "finish"),
-            unwarp_finish: program!(ScreenProgram, "unwarp_finish"),
-            finish_points: ScreenProgram::new(device, shared, finish_points, "finish").drawing(
-                Raster {
-                    vertex: "finish_point",
-                    topology: wgpu::PrimitiveTopology::PointList,
-                    ..Raster::full_screen(shared.output.into())
-                },
-            ),
-            view: ScreenProgram::new(device, shared, view, "sampling_view").for_all_lights(),
+            slice_ends: SliceEnds::new(device, shared),
+            coordinates: Coordinates::new(device, shared),
+            refine: Refine::new(device, shared),
+            slice_directions: SliceDirections::new(device, shared),
+            tree: Tree::new(device, shared),
+            march_samples: MarchSamples::new(device, shared),
+            interpolate: Interpolate::new(device, shared),
+            unwarp: Unwarp::new(device, shared),
+            unwarp_finish: UnwarpFinish::new(device, shared),
+            correct: Correct::new(device, shared),
+            upscale: Upscale::new(device, shared),
+            finish: Finish::new(device, shared),
+            finish_points: FinishPoints::new(device, shared),
+            view: View::new(device, shared),
         }
     }
-}
-
-/// What the stages of one light hand on.
-struct Resources {
-    params: wgpu::Buffer,
-    lines: wgpu::Buffer,
-    depth: wgpu::Buffer,
-    sources: wgpu::Buffer,
-    /// How long the lists are, and workgroups for each.
-    counts: wgpu::Buffer,
-    dispatches: wgpu::Buffer,
-    marched: wgpu::Buffer,
-    traces: wgpu::Buffer,
-    nodes: wgpu::Buffer,
-    /// What marched samples see.
-    values: wgpu::Buffer,
-    /// What all samples see, and their depth.
-    samples: wgpu::TextureView,
-}
-
-impl Resources {
-    fn new(params: &Params, sizes: &Sizes, scope: &mut LightScope<'_>) -> Self {
-        let epipole = Epipole::new(scope.rays, scope.size, &scope.light.emitter);
-        let uniform = ParamsUniform::new(params, sizes, &epipole);
-        let bytes = sizes.bytes();
-        Self {
-            params: scope.uniform("epipolar params", &uniform),
-            lines: scope.storage("slice ends", bytes.lines),
-            depth: scope.storage("sample depths", bytes.depth),
-            sources: scope.storage("interpolation sources", bytes.sources),
-            counts: scope.indirect_draws("list lengths", LISTS),
-            dispatches: scope.indirect("list workgroups", LISTS),
-            marched: scope.storage("marched samples", bytes.sources),
-            traces: scope.storage("slice directions", bytes.traces),
-            nodes: scope.storage("min/max trees", bytes.nodes),
-            values: scope.storage("marched values", bytes.values),
-            samples: scope.storage_texture(
-                "sample values",
-                [sizes.samples, sizes.slices],
-                TextureFormat::Rgba32Float,
-            ),
-        }
-    }
-
-    /// The rectangular picture, and the list of its pixels that are corrected.
-    fn rectangular(
-        &self,
-        sizes: &Sizes,
-        scope: &mut LightScope<'_>,
-    ) -> (wgpu::Buffer, wgpu::TextureView) {
-        let format = TextureFormat::Rgba32Float;
-        (
-            scope.storage("corrected pixels", sizes.bytes().coarse_list),
-            scope.storage_texture("rectangular values", sizes.coarse, format),
-        )
-    }
-
-    fn indirect(&self, list: u64) -> Workgroups {
-        Workgroups::Indirect(self.dispatches.clone(), 12 * list)
-    }
-}
-
-fn view(texture: &wgpu::TextureView) -> BindingResource<'_> {
-    BindingResource::TextureView(texture)
-}
-
-fn buffer(buffer: &wgpu::Buffer) -> BindingResource<'_> {
-    buffer.as_entire_binding()
-}
-
-fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
-    [width.div_ceil(TILE[0]), height.div_ceil(TILE[1]), 1]
 }
 
 impl GpuMethod for Params {
@@ -245,284 +84,73 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     let programs = programs.as_ref();
     let sizes = Sizes::new(params, scope.size, scope.light, &scope.inputs);
     let r = Resources::new(params, &sizes, scope);
-    let mut passes = locate(programs, &sizes, scope, &r);
-    passes.extend(gather(programs, &sizes, scope, &r));
+    let mut passes = programs.sample(scope, &sizes, &r);
+    let image = r.rectangular(&sizes, scope);
     // Through a stencil the last pass alone draws.
     let is_direct = scope.stencil.is_none() && params.downscale == 1 && params.show == Show::Light;
     let (more, last) = if is_direct {
-        direct(programs, &sizes, scope, &r)
+        programs.unwarp_directly(scope, &r, &image)
     } else {
-        rectangular(params, programs, &sizes, scope, &r)
+        programs.unwarp_rectangular(params, scope, &sizes, &r, image)
     };
     passes.extend(more);
     LightPasses::new(passes, last)
 }
 
-/// Where samples lie, which of them are marched: stages 1 to 5.
-fn locate(programs: &Programs, sizes: &Sizes, scope: &LightScope<'_>, r: &Resources) -> Vec<Pass> {
-    let sections = [sizes.samples.div_ceil(SECTION_GROUP), sizes.slices, 1];
-    let by_sample = [sizes.samples.div_ceil(GROUP), sizes.slices, 1];
-    vec![
-        scope.compute(
-            &programs.slice_ends,
-            "slice end points",
-            &[
-                buffer(&r.params),
-                buffer(&r.lines),
-                buffer(&r.counts),
-                buffer(&r.dispatches),
-            ],
-            [sizes.slices.div_ceil(GROUP), 1, 1],
-        ),
-        scope.compute(
-            &programs.coordinates,
-            "linear depth and coordinate texture",
-            &[buffer(&r.params), buffer(&r.lines), buffer(&r.depth)],
-            by_sample,
-        ),
-        scope.compute(
-            &programs.refine,
-            "refinement and marking",
-            &[
-                buffer(&r.params),
-                buffer(&r.lines),
-                buffer(&r.depth),
-                buffer(&r.sources),
-                buffer(&r.marched),
-                buffer(&r.counts),
-                buffer(&r.dispatches),
-            ],
-            sections,
-        ),
-    ]
-}
-
-/// What the samples see: stages 6 to 9.
-fn gather(
-    programs: &Programs,
-    sizes: &Sizes,
-    scope: &mut LightScope<'_>,
-    r: &Resources,
-) -> Vec<Pass> {
-    let mut passes = vec![scope.compute(
-        &programs.slice_directions,
-        "slice directions",
-        &[buffer(&r.params), buffer(&r.lines), buffer(&r.traces)],
-        [sizes.slices.div_ceil(GROUP), 1, 1],
-    )];
-    if sizes.levels > 0 {
-        passes.push(Pass {
-            name: scope.pass_name("min/max tree"),
-            work: Work::Compute(tree(programs, sizes, scope, r)),
-        });
+impl Programs {
+    /// Stages 1 to 9: the samples and their mean visibilities.
+    fn sample(&self, scope: &mut LightScope<'_>, sizes: &Sizes, r: &Resources) -> Vec<Pass> {
+        let mut passes = vec![
+            self.slice_ends.pass(scope, sizes, r),
+            self.coordinates.pass(scope, sizes, r),
+            self.refine.pass(scope, sizes, r),
+            self.slice_directions.pass(scope, sizes, r),
+        ];
+        if sizes.levels > 0 {
+            passes.push(self.tree.pass(scope, sizes, r));
+        }
+        passes.push(self.march_samples.pass(scope, r));
+        passes.push(self.interpolate.pass(scope, sizes, r));
+        passes
     }
-    passes.push(scope.compute(
-        &programs.march_samples,
-        "ray marching",
-        &[
-            buffer(&r.params),
-            buffer(&r.traces),
-            buffer(&r.nodes),
-            buffer(&r.lines),
-            buffer(&r.depth),
-            buffer(&r.marched),
-            buffer(&r.counts),
-            buffer(&r.values),
-        ],
-        r.indirect(0),
-    ));
-    passes.push(scope.compute(
-        &programs.interpolate,
-        "interpolation",
-        &[
-            buffer(&r.params),
-            buffer(&r.sources),
-            buffer(&r.depth),
-            buffer(&r.values),
-            view(&r.samples),
-        ],
-        [sizes.samples.div_ceil(GROUP), sizes.slices, 1],
-    ));
-    passes
-}
 
-/// The dispatches that build all trees, from the leaves up.
-fn tree(
-    programs: &Programs,
-    sizes: &Sizes,
-    scope: &mut LightScope<'_>,
-    r: &Resources,
-) -> Vec<Dispatch> {
-    const NAMES: [&str; 4] = ["tree 0", "tree 4", "tree 8", "tree 12"];
-    let starts = (0..sizes.levels).step_by(LEVELS_A_DISPATCH as usize);
-    let dispatch = |(base, name): (u32, &'static str)| {
-        let invocations = (sizes.columns >> base).div_ceil(1 << LEVELS_A_DISPATCH);
-        let uniform = scope.uniform(name, &TreeUniform { base, pad: [0; 3] });
-        scope.dispatch(
-            &programs.tree,
-            &[
-                buffer(&r.params),
-                buffer(&uniform),
-                buffer(&r.traces),
-                buffer(&r.nodes),
-            ],
-            [invocations.div_ceil(GROUP), sizes.slices * sizes.charts, 1],
-        )
-    };
-    starts.zip(NAMES).map(dispatch).collect()
-}
-
-/// Back to a picture at full resolution: stage 10 and the phase function in one, and again for the pixels that stage 11
-/// corrects.
-fn direct(
-    programs: &Programs,
-    sizes: &Sizes,
-    scope: &mut LightScope<'_>,
-    r: &Resources,
-) -> (Vec<Pass>, Pass) {
-    let (list, values) = r.rectangular(sizes, scope);
-    let unwarp = scope.full_screen(
-        &programs.unwarp_finish,
-        "unwarping and phase function",
-        &[
-            buffer(&r.params),
-            buffer(&list),
-            buffer(&r.counts),
-            buffer(&r.lines),
-            view(&r.samples),
-            buffer(&r.dispatches),
-        ],
-    );
-    let correction = correct(programs, scope, r, "correction", (1, 1), &list, &values);
-    let points = scope.draw(
-        &programs.finish_points,
-        &[buffer(&r.params), view(&values), buffer(&list)],
-        scope.target.clone(),
-    );
-    let points = FullScreen {
-        gate: Some((r.counts.clone(), COUNT_BYTES)),
-        ..points
-    };
-    let points = Pass {
-        name: scope.pass_name("corrected pixels"),
-        work: Work::FullScreen(vec![points]),
-    };
-    (vec![unwarp, correction], points)
-}
-
-/// Back to a picture by way of a rectangular one: stages 10 to 13, and the phase function or a debug view.
-fn rectangular(
-    params: &Params,
-    programs: &Programs,
-    sizes: &Sizes,
-    scope: &mut LightScope<'_>,
-    r: &Resources,
-) -> (Vec<Pass>, Pass) {
-    let (list, coarse) = r.rectangular(sizes, scope);
-    let unwarp = scope.compute(
-        &programs.unwarp,
-        "unwarping",
-        &[
-            buffer(&r.params),
-            buffer(&list),
-            buffer(&r.counts),
-            buffer(&r.lines),
-            view(&r.samples),
-            buffer(&r.dispatches),
-            view(&coarse),
-        ],
-        tiles(sizes.coarse),
-    );
-    let pixels = (1, params.downscale);
-    let mut passes = vec![
-        unwarp,
-        correct(programs, scope, r, "correction", pixels, &list, &coarse),
-    ];
-    let mut values = coarse;
-    if params.downscale > 1 {
-        let (upscaled, passes_there) = upscale(programs, sizes, scope, r, &values);
-        passes.extend(passes_there);
-        values = upscaled;
+    /// Stage 10 and the phase function in one, and again for the pixels that stage 11 corrects.
+    fn unwarp_directly(
+        &self,
+        scope: &mut LightScope<'_>,
+        r: &Resources,
+        image: &Image,
+    ) -> (Vec<Pass>, Pass) {
+        let passes = vec![
+            self.unwarp_finish.pass(scope, r, image),
+            self.correct.coarse(scope, r, image, 1),
+        ];
+        (passes, self.finish_points.pass(scope, r, image))
     }
-    let last = match params.show {
-        Show::Light => scope.full_screen(
-            &programs.finish,
-            "phase function",
-            &[buffer(&r.params), view(&values)],
-        ),
-        _ => scope.full_screen(
-            &programs.view,
-            "view",
-            &[
-                buffer(&r.params),
-                view(&values),
-                buffer(&r.lines),
-                buffer(&r.sources),
-            ],
-        ),
-    };
-    (passes, last)
-}
 
-/// To full resolution: stages 12 and 13.
-fn upscale(
-    programs: &Programs,
-    sizes: &Sizes,
-    scope: &mut LightScope<'_>,
-    r: &Resources,
-    coarse: &wgpu::TextureView,
-) -> (wgpu::TextureView, [Pass; 2]) {
-    let list = scope.storage("upscaled, corrected pixels", sizes.bytes().list);
-    let values = scope.storage_texture("upscaled values", scope.size, TextureFormat::Rgba32Float);
-    let pass = scope.compute(
-        &programs.upscale,
-        "upscaling",
-        &[
-            buffer(&r.params),
-            view(coarse),
-            view(&values),
-            buffer(&list),
-            buffer(&r.counts),
-            buffer(&r.dispatches),
-        ],
-        tiles(scope.size),
-    );
-    let correction = correct(
-        programs,
-        scope,
-        r,
-        "second correction",
-        (2, 1),
-        &list,
-        &values,
-    );
-    (values, [pass, correction])
-}
-
-/// Marches the pixels of a list, of a picture that is `downscale` times smaller than the full one.
-fn correct(
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-    r: &Resources,
-    name: &'static str,
-    (list, downscale): (u32, u32),
-    pixels: &wgpu::Buffer,
-    out: &wgpu::TextureView,
-) -> Pass {
-    let uniform = CorrectUniform {
-        list,
-        downscale,
-        pad: [0; 2],
-    };
-    let uniform = scope.uniform(name, &uniform);
-    let own = [
-        buffer(&r.params),
-        buffer(&r.traces),
-        buffer(&r.nodes),
-        buffer(&uniform),
-        buffer(pixels),
-        buffer(&r.counts),
-        view(out),
-    ];
-    scope.compute(&programs.correct, name, &own, r.indirect(list.into()))
+    /// Stages 10 to 13 by way of a rectangular texture, then the phase function or a debug view.
+    fn unwarp_rectangular(
+        &self,
+        params: &Params,
+        scope: &mut LightScope<'_>,
+        sizes: &Sizes,
+        r: &Resources,
+        mut image: Image,
+    ) -> (Vec<Pass>, Pass) {
+        let mut passes = vec![
+            self.unwarp.pass(scope, sizes, r, &image),
+            self.correct.coarse(scope, r, &image, params.downscale),
+        ];
+        if params.downscale > 1 {
+            let (upscaled, pass) = self.upscale.pass(scope, sizes, r, &image);
+            passes.push(pass);
+            passes.push(self.correct.upscaled(scope, r, &upscaled));
+            image = upscaled;
+        }
+        let last = match params.show {
+            Show::Light => self.finish.pass(scope, r, &image),
+            _ => self.view.pass(scope, r, &image),
+        };
+        (passes, last)
+    }
 }

@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "epipolar sampling with 1-D min/max trees: few rays marched along epipolar lines, the rest interpolated",
     citation: "Engelhardt & Dachsbacher, Epipolar Sampling for Shadows and Crepuscular Rays in Participating Media with Single Scattering, I3D 2010; Yusov, IVB Atmospheric Light Scattering, 2012",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: true,
@@ -32,28 +33,28 @@ pub struct Params {
     pub samples: u32,
     /// Samples from one that is marched to the next, where no depths differ (a power of two, 1 to 128).
     pub initial_step: u32,
-    /// How many times smaller the picture is on each side that samples are unwarped to (1, 2 or 4).
+    /// Factor by which the texture that samples are unwarped to is smaller on each side (1, 2 or 4).
     pub downscale: u32,
     /// Relative difference between neighbours past which one does not stand for the other (> 0, to 1).
     pub threshold: f64,
-    /// What that is a difference of.
+    /// Quantity that `threshold` compares.
     pub criterion: Criterion,
-    /// Which algorithm marches.
+    /// Algorithm that marches.
     pub tree: Tree,
-    /// What the picture shows.
+    /// Content of the image.
     pub show: Show,
 }
 
-/// What must not differ too much between samples that stand for each other.
+/// Quantity that must not differ too much between samples that stand for each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
     /// View depth.
     Depth,
-    /// What would be scattered if nothing blocked the light.
+    /// Light that would be scattered if nothing blocked it.
     InScatter,
 }
 
-/// How rays are marched.
+/// Algorithms that march rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tree {
     /// With 1-D min/max trees (the article's algorithm 2).
@@ -62,7 +63,7 @@ pub enum Tree {
     None,
 }
 
-/// What the picture shows.
+/// Content of the image: the light or a debug view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Show {
     /// In-scattered light.
@@ -73,7 +74,7 @@ pub enum Show {
     DepthBreaks,
     /// Pixels that had no fitting sources, red.
     Corrected,
-    /// What is interpolated, before the phase function.
+    /// The interpolated quantity, before the phase function.
     InScatter,
 }
 

@@ -1,4 +1,4 @@
-//! How large the buffers of a light's passes are.
+//! Sizes of the buffers of a light's passes.
 
 use super::params::{INFO, Params, Tree};
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     techniques::LightRequest,
 };
 
-/// How large everything is for one light.
+/// Numbers of slices, samples and so on for one light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sizes {
     pub(super) slices: u32,
@@ -100,5 +100,5 @@ pub(crate) fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), P
     )
 }
 
-/// Levels of a tree; coarser nodes are hardly ever lit or dark as a whole (Yusov 2012, section 6.3).
+/// Levels of a tree; coarser nodes are hardly ever lit or dark throughout (Yusov 2012, section 6.3).
 const MOST_LEVELS: u32 = 12;

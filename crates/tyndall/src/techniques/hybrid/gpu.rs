@@ -1,4 +1,4 @@
-//! The GPU side: the bounds, the light.
+//! The GPU side: the passes of the shadows' bounds, and the one that integrates.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::{
     inputs::CountValue,
     mesh::Occluder,
     passes::occluder::{self as volumes, Names, VolumePrograms, check_list},
-    shader::block,
+    shader::{block, constant},
     techniques::{
         info::Reach,
         method::{GpuMethod, LightRequest},
@@ -23,10 +23,10 @@ use crate::{
 
 block! {
     /// The shaders' `HybridParams`.
-    pub(crate) struct ParamsUniform = "HybridParams" in "tyndall::techniques::hybrid::hybrid", checked by hybrid_params_is_laid_out_as_in_wgsl {
-        pub(crate) steps: u32,
-        pub(crate) bounds: u32,
-        pub(crate) show: u32,
+    struct ParamsUniform = "HybridParams" in "tyndall::techniques::hybrid::hybrid", checked by hybrid_params_is_laid_out_as_in_wgsl {
+        steps: u32,
+        bounds: u32,
+        show: u32,
         pad: u32,
     }
 }
@@ -81,27 +81,27 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     let programs = scope.programs::<Programs>();
     let programs = programs.as_ref();
     let inputs = scope.inputs;
-    // Outside the volumes pictures and glass still tint.
+    // Outside the volumes light textures and glass still tint.
     let is_plain = inputs.glass.is_none() && scope.light.texture.is_none();
     let occluders = inputs.occluders.filter(|_| is_plain);
     let uniform = ParamsUniform {
         steps: params.steps,
-        bounds: match occluders {
-            None => 0,
-            Some([]) => 1,
-            Some(_) => 2,
-        },
-        show: match params.show {
-            Show::Light => 0,
-            Show::Bounds => 1,
-        },
+        bounds: constant(match occluders {
+            None => "HYBRID_UNKNOWN",
+            Some([]) => "HYBRID_NONE",
+            Some(_) => "HYBRID_BOUNDED",
+        }),
+        show: constant(match params.show {
+            Show::Light => "HYBRID_SHOW_LIGHT",
+            Show::Bounds => "HYBRID_SHOW_BOUNDS",
+        }),
         pad: 0,
     };
     let uniform = scope.uniform("hybrid params", &uniform);
     let mut passes = Vec::new();
     let mut witness = None;
     let bounds = match occluders.filter(|occluders| !occluders.is_empty()) {
-        None => scope.storage("hybrid no bounds", 8),
+        None => scope.storage("hybrid no bounds", size_of::<[f32; 2]>() as u64),
         Some(occluders) => {
             count(occluders, scope);
             let (found, tiles) = volumes::passes(&NAMES, occluders, &programs.volumes, scope);

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! with A the unshadowed light of a stretch in closed form (Chen 2011, eq. 1; Sun et al. 2005 for local lights; see
-//! `light/stretch.wgsl`). Rays that no volume touches take no step at all. The paper divides its steps over d1..d2; here
+//! `light/stretch.wesl`). Rays that no volume touches take no step at all. The paper divides its steps over d1..d2; here
 //! they keep the length they have in [`ray-march`](super::ray_march), D / `steps`, so that a short shadow costs little and
 //! is as exact.
 //!
@@ -39,12 +39,12 @@
 //! software driver the volumes of a dragon of 200 000 triangles, 640 x 480 pixels, take two sevenths of what they take as draws
 //! with a fragment a pixel, of a sponge of many holes a sixth; the middles get longer by a tenth to a sixth, for a tile's
 //! bounds hold those of all its rays. Groups of 16 invocations are twice as fast there as of 64. No help: leaving caps out that
-//! the map shows to be shaded, asking for the corners of a row of tiles only beside the picture's sides.
+//! the map shows to be shaded, asking for the corners of a row of tiles only beside the image's sides.
 //!
 //! # Where it fails
 //!
 //! Shadows in the map of what is not among the occluders are lit outside d1..d2. A forest of leaves has a silhouette an
-//! edge, and its middles are whole rays. Lights through pictures or coloured glass tint what is outside the volumes: their
+//! edge, and its middles are whole rays. Lights through textures or coloured glass tint what is outside the volumes: their
 //! rays are marched whole. Orthographic rays start anywhere: their d1 is 0 where they meet a volume at all, and those of local
 //! lights, which may run in a shadow from end to end, are marched whole.
 

@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "silhouette shadow volumes bound the shadows: closed forms outside, steps between",
     citation: "Wyman & Ramsey, Interactive Volumetric Shadows in Participating Media with Single-Scattering, IEEE Interactive Ray Tracing 2008",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: true,
@@ -28,16 +29,16 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
 pub struct Params {
     /// Steps over a whole ray (1 to 65536).
     pub steps: u32,
-    /// What the picture shows.
+    /// The contents of the image.
     pub show: Show,
 }
 
-/// What the picture shows.
+/// The contents of the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Show {
     /// The in-scattered light.
     Light,
-    /// Where the marched stretch begins (red), ends (green), and how long it is (blue) [m].
+    /// The marched stretch: its start (red), end (green) and length (blue) [m].
     Bounds,
 }
 

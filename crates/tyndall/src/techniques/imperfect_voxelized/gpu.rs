@@ -1,170 +1,70 @@
-//! The GPU side: maps, voxels and their scan of a batch of samples at a time, gathered into one picture.
+//! The order of the passes: maps, voxels and their scan of a batch of samples at a time, gathered into one texture.
 
 use std::sync::{Arc, OnceLock};
 
-use rayon::prelude::*;
-
 use super::{
-    params::{Gather, INFO, Params},
-    surface,
+    buffers::{self, Buffers},
+    gather::GatherLight,
+    params::Params,
+    rectify::Rectify,
+    resolve::Resolve,
+    surface::{self, LightSurfaces},
+    surface_resolve::ResolveSurfaces,
 };
 use crate::{
-    epipolar::{
-        Resolution,
-        grid::{EpipolarGrid, GridScene},
-    },
     error::PrepareError,
-    frame::Medium,
     gpu::{
         cache,
         pass::{LightPasses, Pass},
-        program::{ComputeProgram, ScreenProgram},
         scope::{LightScope, Shared},
     },
-    inputs::{CountValue, LightInputs},
-    light::LightSource,
+    inputs::CountValue,
     passes::{
-        epipolar::EpipolarUniform,
-        fill::Fill,
-        imperfect::gpu::{self as imperfect, AreaLight, Maps},
-        voxels::gpu::{self as voxels, Scan},
+        imperfect::{area::AreaLight, gpu as imperfect},
+        voxels::scan::Scan,
     },
-    shader::block,
     techniques::method::{GpuMethod, LightRequest},
 };
 
-/// Light rays that a workgroup of `rectify.wgsl` takes.
-const RAYS_A_WORKGROUP: u32 = 64 * 32;
-/// Pixels that a workgroup of `gather.wgsl` takes.
-const TILE: [u32; 2] = [8, 16];
-
-block! {
-    /// The shaders' `IvsvParams`.
-    pub(super) struct ParamsUniform = "IvsvParams" in "tyndall::techniques::imperfect_voxelized::params", checked by ivsv_params_is_laid_out_as_in_wgsl {
-        pub(super) size: [u32; 2],
-        pitch: u32,
-        turns: u32,
-        weighting: u32,
-        taps: u32,
-        spread: u32,
-        pad: u32,
-    }
-}
-
-impl ParamsUniform {
-    fn new(params: &Params, size: [u32; 2]) -> Self {
-        let (pitch, turns, taps, spread) = match params.gather {
-            Gather::Full => (1, 1, 1, 1),
-            Gather::Interleaved => (1, 9, 9, 3),
-            Gather::Quarter => (2, 1, 4, 1),
-        };
-        Self {
-            size: size.map(|n| n.div_ceil(pitch)),
-            pitch,
-            turns,
-            weighting: params.weighting as u32,
-            taps,
-            spread,
-            pad: 0,
-        }
-    }
-
-    /// Workgroups that take so many pixels each, see `ivsv_place` of `params.wgsl`.
-    pub(super) fn groups(&self, tile: [u32; 2]) -> [u32; 3] {
-        let along = |axis: usize| {
-            let tiles = self.size[axis].div_ceil(self.spread * tile[axis]);
-            self.spread * tiles
-        };
-        [along(0), along(1), 1]
-    }
-
-    pub(super) fn pixels(&self) -> u64 {
-        u64::from(self.size[0]) * u64::from(self.size[1])
-    }
-}
-
-/// The technique's shaders.
+/// The technique's programs, by pass.
 pub(crate) struct Programs {
     maps: Arc<imperfect::Programs>,
-    fill: Arc<Fill>,
+    rectify: Rectify,
     scan: Arc<Scan>,
-    rectify: ComputeProgram,
-    /// By the number of the medium's components, made when they are first asked for.
-    gather: [OnceLock<ComputeProgram>; Medium::MAX_COMPONENTS + 1],
-    resolve: ScreenProgram,
+    gather: GatherLight,
+    resolve: Resolve,
     /// Made when they are first asked for.
-    surface: OnceLock<surface::Programs>,
+    surfaces: OnceLock<(LightSurfaces, ResolveSurfaces)>,
 }
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
         Self {
             maps: shared.programs(device),
-            fill: shared.programs(device),
+            rectify: Rectify::new(device, shared),
             scan: shared.programs(device),
-            rectify: ComputeProgram::new(
-                device,
-                shared,
-                "techniques::imperfect_voxelized::rectify",
-                "ivsv_rectify",
-            ),
-            gather: Default::default(),
-            resolve: ScreenProgram::new(
-                device,
-                shared,
-                "techniques::imperfect_voxelized::resolve",
-                "ivsv_resolve",
-            ),
-            surface: OnceLock::new(),
+            gather: GatherLight::default(),
+            resolve: Resolve::new(device, shared),
+            surfaces: OnceLock::new(),
         }
     }
 }
 
 impl Programs {
-    fn gather(&self, device: &wgpu::Device, shared: &Shared, components: usize) -> &ComputeProgram {
-        let components = components.min(Medium::MAX_COMPONENTS);
+    /// The passes over surfaces.
+    fn surfaces(&self, scope: &LightScope<'_>) -> &(LightSurfaces, ResolveSurfaces) {
+        let (device, shared) = (scope.device, scope.shared);
         let make = || {
-            let module = "techniques::imperfect_voxelized::gather";
-            ComputeProgram::new(device, shared, module, "ivsv_gather")
-                .with("MEDIUM_COMPONENTS", components as f64)
+            let light = LightSurfaces::new(device, shared);
+            (light, ResolveSurfaces::new(device, shared))
         };
-        self.gather[components].get_or_init(make)
-    }
-}
-
-/// What all batches of a light share.
-pub(super) struct Buffers {
-    pub(super) light: imperfect::Buffers,
-    grids: wgpu::Buffer,
-    voxels: wgpu::Buffer,
-    pub(super) params: wgpu::Buffer,
-    sums: wgpu::Buffer,
-}
-
-impl Buffers {
-    /// The resources of a pass over the samples of a batch, by their bindings in `bindings.wesl` and `samples.wesl`, and
-    /// the pass's own from 7 on.
-    pub(super) fn of_batch<'a, const N: usize>(
-        &'a self,
-        index: u32,
-        own: [wgpu::BindingResource<'a>; N],
-    ) -> Vec<wgpu::BindingResource<'a>> {
-        let shared = [
-            self.light.batches.binding(index),
-            self.light.samples.as_entire_binding(),
-            self.light.maps.as_entire_binding(),
-            self.light.colors.as_entire_binding(),
-            self.grids.as_entire_binding(),
-            self.voxels.as_entire_binding(),
-            self.params.as_entire_binding(),
-        ];
-        shared.into_iter().chain(own).collect()
+        self.surfaces.get_or_init(make)
     }
 }
 
 impl GpuMethod for Params {
     fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
-        check(self, request)
+        buffers::check(self, request)
     }
 
     fn passes(&self, scope: &mut LightScope<'_>) -> LightPasses {
@@ -178,129 +78,41 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     let programs = programs.as_ref();
     // Others than rectangles are refused by the table.
     let area = AreaLight::new(&scope.light.emitter).unwrap_or_default();
-    let samples = area.positions.len() as u32;
-    let maps = maps(params, samples, &scope.inputs, &scope.device.limits());
-    let picture = ParamsUniform::new(params, scope.size);
+    let maps = buffers::maps(params, &area, &scope.inputs, &scope.device.limits());
     let (light, sample) = programs.maps.sample(scope, &area, &maps);
-    let bytes = voxels::bytes(params.resolution) * u64::from(maps.batch);
-    let buffers = Buffers {
-        light,
-        grids: scope.upload("grids of the samples", &grids(params, &area, scope)),
-        voxels: scope.storage("voxels of the samples", bytes),
-        params: scope.uniform("ivsv params", &picture),
-        sums: scope.storage("gathered light", 16 * picture.pixels()),
-    };
-    let surface = scope.surface_shadows.map(|shadows| {
-        let sums = surface::Sums::new(scope, shadows, &picture);
-        let make = || surface::Programs::new(scope.device, scope.shared);
-        (programs.surface.get_or_init(make), sums)
+    let buffers = Buffers::new(params, scope, &area, light, maps.batch);
+    let surfaces = scope.surface_shadows.map(|shadows| {
+        let sums = surface::Sums::new(scope, shadows, &buffers.uniform);
+        (programs.surfaces(scope), sums)
     });
     let mut passes = vec![sample];
     for batch in 0..buffers.light.batches.values.len() as u32 {
         if let Some(cloud) = scope.inputs.points {
-            passes.extend(
-                programs
-                    .maps
-                    .draw(scope, &buffers.light, batch, cloud.points),
-            );
-            passes.extend(voxelize(
-                programs,
-                scope,
-                &buffers,
-                batch,
-                params.resolution,
-            ));
+            let maps = &programs.maps;
+            passes.extend(maps.draw(scope, &buffers.light, batch, cloud.points));
+            passes.push(programs.rectify.pass(scope, &buffers, batch));
+            let count = buffers.light.batches.values[batch as usize].count;
+            let (side, voxels) = (params.resolution, &buffers.voxels);
+            passes.push(programs.scan.pass(scope, side, voxels, count));
         }
-        passes.push(gather(programs, scope, &buffers, batch, &picture));
-        if let Some((programs, sums)) = &surface {
-            passes.push(sums.add(programs, scope, &buffers, batch, &picture));
+        passes.push(programs.gather.pass(scope, &buffers, batch));
+        if let Some(((light, _), sums)) = &surfaces {
+            passes.push(light.pass(scope, &buffers, sums, batch));
         }
     }
-    let visibility = surface.map(|(programs, sums)| {
-        let (pass, visibility) = sums.resolve(programs, scope, &buffers);
+    let visibility = surfaces.map(|((_, resolve), sums)| {
+        let (pass, visibility) = resolve.pass(scope, &buffers, &sums);
         passes.push(pass);
         visibility
     });
-    let resources = buffers.of_batch(0, [buffers.sums.as_entire_binding()]);
-    let last = scope.full_screen(&programs.resolve, "resolve", &resources);
-    count(scope, &passes, &last, u64::from(samples));
+    let last = programs.resolve.pass(scope, &buffers);
+    count(scope, &passes, &last, area.positions.len() as u64);
     LightPasses {
         before: passes,
         last,
         witness: None,
         visibility,
     }
-}
-
-/// The voxels of a batch.
-fn voxelize(
-    programs: &Programs,
-    scope: &mut LightScope<'_>,
-    buffers: &Buffers,
-    index: u32,
-    side: u32,
-) -> [Pass; 2] {
-    let count = buffers.light.batches.values[index as usize].count;
-    let clear = programs
-        .fill
-        .dispatch(scope, "no voxel", &buffers.voxels, 0);
-    let resources = buffers.of_batch(index, []);
-    let groups = [side * side / RAYS_A_WORKGROUP, 1, count];
-    let rectify = scope.dispatch(&programs.rectify, &resources, groups);
-    [
-        Pass::compute(scope.pass_name("voxelize"), vec![clear, rectify]),
-        programs.scan.pass(scope, side, &buffers.voxels, count),
-    ]
-}
-
-fn gather(
-    programs: &Programs,
-    scope: &LightScope<'_>,
-    buffers: &Buffers,
-    index: u32,
-    picture: &ParamsUniform,
-) -> Pass {
-    let resources = buffers.of_batch(index, [buffers.sums.as_entire_binding()]);
-    let components = scope.frame.medium.components.len();
-    let program = programs.gather(scope.device, scope.shared, components);
-    scope.compute(program, "gather", &resources, picture.groups(TILE))
-}
-
-/// The samples' epipolar grids.
-fn grids(params: &Params, area: &AreaLight, scope: &LightScope<'_>) -> Vec<EpipolarUniform> {
-    let resolution = Resolution {
-        slices: params.resolution,
-        samples: params.resolution,
-        epipole_radius: params.epipole_radius,
-    };
-    let (camera, size) = (scope.rays, scope.size);
-    let grid = |position: &glam::DVec3| {
-        let scene = GridScene {
-            camera,
-            size,
-            light: LightSource::Position(position.to_array()),
-            cone: Some((area.normal, std::f64::consts::FRAC_PI_2)),
-            faces: &[],
-            side: params.resolution as usize,
-        };
-        let none = EpipolarUniform {
-            samples: params.resolution,
-            slices: params.resolution,
-            position: (*position - camera.eye).as_vec3().to_array(),
-            ..EpipolarUniform::NONE
-        };
-        EpipolarGrid::new(&scene, &resolution).map_or(none, |grid| {
-            EpipolarUniform::new(&grid.in_rows(&scene, params.resolution), 1)
-        })
-    };
-    area.positions.par_iter().map(grid).collect()
-}
-
-/// How the maps are made, and how many samples' maps and voxels the device binds at once.
-fn maps(params: &Params, samples: u32, inputs: &LightInputs<'_>, limits: &wgpu::Limits) -> Maps {
-    let at_once = if params.batched { samples } else { 1 };
-    let bytes = voxels::bytes(params.resolution);
-    Maps::new(inputs, params.points, at_once, bytes, limits)
 }
 
 /// Passes, dispatches and samples of the light.
@@ -314,21 +126,4 @@ fn count(scope: &mut LightScope<'_>, before: &[Pass], last: &Pass, samples: u64)
     ] {
         scope.count(name, CountValue::Known(value));
     }
-}
-
-/// Refuses what the device cannot bind.
-fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), PrepareError> {
-    let LightRequest {
-        limits,
-        size,
-        index,
-        inputs,
-        ..
-    } = *request;
-    let pixels = ParamsUniform::new(params, size).pixels();
-    let others = [
-        ("voxels of a sample", voxels::bytes(params.resolution)),
-        ("gathered light", 16 * pixels),
-    ];
-    maps(params, 1, inputs, limits).check(INFO.name, index, limits, &others)
 }

@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "imperfect voxelized shadow volumes: an area light as hundreds of coarse grids, all made at once",
     citation: "Wyman & Dai, Imperfect Voxelized Shadow Volumes, HPG 2013; maps: Ritschel et al., Imperfect Shadow Maps, SIGGRAPH Asia 2008",
     lights: &[LightKind::Rect],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: false,
@@ -23,7 +24,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     is_reference: false,
 };
 
-/// Which pixels gather which samples.
+/// Shares of the samples that pixels gather.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gather {
     /// Every pixel all samples.
@@ -41,14 +42,14 @@ const GATHERS: &[(&str, Gather)] = &[
     ("quarter", Gather::Quarter),
 ];
 
-/// What a voxel counts for in the light of a ray.
+/// Weight of a voxel in the light of a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Weighting {
     /// Its share of the light that the ray would get without shadows.
     #[default]
-    Airlight = 0,
-    /// The same for all.
-    Uniform = 1,
+    Airlight,
+    /// Equal for all.
+    Uniform,
 }
 
 const WEIGHTINGS: &[(&str, Weighting)] = &[
@@ -64,9 +65,9 @@ pub struct Params {
     /// Points of the cloud that a sample's map is made of (0 to 2^20); 0: as many as it has texels; fewer where the
     /// cloud has fewer.
     pub points: u32,
-    /// Which pixels gather which samples.
+    /// Share of the samples that a pixel gathers.
     pub gather: Gather,
-    /// What a voxel counts for.
+    /// Weight of a voxel.
     pub weighting: Weighting,
     /// All samples at once, as many as the device binds; or each in passes of its own.
     pub batched: bool,

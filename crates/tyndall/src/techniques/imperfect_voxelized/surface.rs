@@ -1,40 +1,16 @@
-//! Shadows on surfaces, from the same voxels: what each pixel's surface gets of each sample, batch by batch.
+//! Shadows on surfaces, from the same voxels: the light of each sample on the surface that each pixel sees, batch by batch.
 
-use super::gpu::{Buffers, ParamsUniform};
+use super::buffers::{Buffers, ParamsUniform};
 use crate::{
     gpu::{
-        pass::{Pass, Work},
-        program::{ComputeProgram, ScreenProgram},
+        pass::Pass,
+        program::ComputeProgram,
         scope::{LightScope, Shared},
     },
     inputs::SurfaceShadows,
 };
 
-/// Pixels that a workgroup of `surface.wgsl` takes.
-const TILE: [u32; 2] = [8; 2];
-
-/// Visibility is a share from 0 to 1.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-
-/// The shaders.
-pub(super) struct Programs {
-    add: ComputeProgram,
-    resolve: ScreenProgram,
-}
-
-impl Programs {
-    pub(super) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let add = "techniques::imperfect_voxelized::surface";
-        let resolve = "techniques::imperfect_voxelized::surface_resolve";
-        Self {
-            add: ComputeProgram::new(device, shared, add, "ivsv_surface"),
-            resolve: ScreenProgram::new(device, shared, resolve, "ivsv_surface_resolve")
-                .writing(FORMAT),
-        }
-    }
-}
-
-/// What is added up for the surfaces of a picture.
+/// Light on the surfaces that pixels see, added up.
 pub(super) struct Sums {
     lit: wgpu::Buffer,
     all: wgpu::Buffer,
@@ -45,9 +21,9 @@ impl Sums {
     pub(super) fn new(
         scope: &mut LightScope<'_>,
         shadows: &SurfaceShadows,
-        picture: &ParamsUniform,
+        uniform: &ParamsUniform,
     ) -> Self {
-        let bytes = 16 * picture.pixels();
+        let bytes = 16 * uniform.pixels();
         let normals = shadows.normals.as_ref();
         Self {
             lit: scope.storage("light on surfaces", bytes),
@@ -57,43 +33,33 @@ impl Sums {
     }
 
     /// Its own bindings, from 7 on.
-    fn bindings(&self) -> [wgpu::BindingResource<'_>; 3] {
+    pub(super) fn bindings(&self) -> [wgpu::BindingResource<'_>; 3] {
         [
             wgpu::BindingResource::TextureView(&self.normals),
             self.lit.as_entire_binding(),
             self.all.as_entire_binding(),
         ]
     }
+}
 
-    /// Adds the samples of a batch.
-    pub(super) fn add(
-        &self,
-        programs: &Programs,
-        scope: &LightScope<'_>,
-        buffers: &Buffers,
-        index: u32,
-        picture: &ParamsUniform,
-    ) -> Pass {
-        let resources = buffers.of_batch(index, self.bindings());
-        let groups = picture.groups(TILE);
-        scope.compute(&programs.add, "light surfaces", &resources, groups)
+pub(super) struct LightSurfaces(ComputeProgram);
+
+impl LightSurfaces {
+    pub(super) fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let module = "techniques::imperfect_voxelized::surface";
+        Self(ComputeProgram::new(device, shared, module, "ivsv_surface"))
     }
 
-    /// Writes the picture that the view hands out.
-    pub(super) fn resolve(
+    /// Adds the samples of a batch.
+    pub(super) fn pass(
         &self,
-        programs: &Programs,
-        scope: &mut LightScope<'_>,
+        scope: &LightScope<'_>,
         buffers: &Buffers,
-    ) -> (Pass, wgpu::TextureView) {
-        let resources = buffers.of_batch(0, self.bindings());
-        let key = (Some(scope.index), "visibility from surfaces");
-        let target = scope.pool.attachment(scope.device, key, scope.size, FORMAT);
-        let draw = scope.draw(&programs.resolve, &resources, target.clone());
-        let pass = Pass {
-            name: scope.pass_name("resolve surfaces"),
-            work: Work::FullScreen(vec![draw]),
-        };
-        (pass, target)
+        sums: &Sums,
+        index: u32,
+    ) -> Pass {
+        let resources = buffers.of_batch(index, sums.bindings());
+        let workgroups = buffers.uniform.workgroups(&self.0, 1);
+        scope.compute(&self.0, "light surfaces", &resources, workgroups)
     }
 }

@@ -47,7 +47,7 @@ fn integrator<'a>(
     Ok(Box::new(Finished(pixels)))
 }
 
-/// The picture, done.
+/// The finished image.
 struct Finished(Vec<DVec3>);
 
 impl RayIntegrator for Finished {
@@ -110,7 +110,7 @@ fn add_slices(
     view: &EpipolarView,
     pixels: &mut [DVec3],
 ) {
-    // What lies beyond the map is lit; what lies near the axis, or behind coloured glass, is walked.
+    // Light beyond the map is not blocked; rays near the axis, or behind coloured glass, are walked.
     let places: Vec<Option<InSlice>> = pixels
         .par_iter_mut()
         .enumerate()
@@ -288,17 +288,17 @@ impl PartialSums {
 
     /// The sums up to a place among the samples, the last of them in part.
     fn up_to(&self, place: f64) -> Vec<DVec3> {
-        let whole = place.floor() as usize;
+        let entire = place.floor() as usize;
         let part = place - place.floor();
         let mut sums = vec![DVec3::ZERO; self.rank];
-        let mut i = whole;
+        let mut i = entire;
         while i > 0 {
             for (k, sum) in sums.iter_mut().enumerate() {
                 *sum += self.tree[i * self.rank + k];
             }
             i -= i & i.wrapping_neg();
         }
-        if let Some(term) = self.terms.get(whole * self.rank..(whole + 1) * self.rank) {
+        if let Some(term) = self.terms.get(entire * self.rank..(entire + 1) * self.rank) {
             for (sum, term) in sums.iter_mut().zip(term) {
                 *sum += part * *term;
             }

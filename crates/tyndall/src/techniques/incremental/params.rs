@@ -13,6 +13,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "partial sums per epipolar slice, view rays in order of their angle",
     citation: "Baran, Chen, Ragan-Kelley, Durand & Lehtinen, A Hierarchical Volumetric Shadow Algorithm for Single Scattering, SIGGRAPH Asia 2010",
     lights: &[LightKind::Directional, LightKind::Point],
+    lights_on_gpu_only: &[],
     backends: Backends::Cpu,
     reads: Reads {
         glass: true,

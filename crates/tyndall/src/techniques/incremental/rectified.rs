@@ -28,7 +28,7 @@ impl Row {
         self.start + i * self.step
     }
 
-    /// Where a gamma lies among the samples, from 0 to their number.
+    /// Place of a gamma among the samples, from 0 to their number.
     pub(crate) fn place(&self, gamma: f64) -> f64 {
         ((gamma - self.start) / self.step).clamp(0.0, self.angles.len() as f64)
     }
@@ -58,8 +58,8 @@ impl Rectified {
             let alpha = slices.alpha(slice);
             let angle = |i: usize| {
                 let gamma = row.gamma(i as f64 + 0.5);
-                let (origin, way) = frame.light_ray(alpha, gamma);
-                frame.shadow_angle(gamma, shadows.light_end(origin, way)) as f32
+                let (origin, direction) = frame.light_ray(alpha, gamma);
+                frame.shadow_angle(gamma, shadows.light_end(origin, direction)) as f32
             };
             row.angles = (0..if looked_at { samples } else { 0 })
                 .map(angle)

@@ -1,4 +1,4 @@
-//! A picture's view rays in the epipolar coordinates of one light.
+//! An image's view rays in the epipolar coordinates of one light.
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::{
     light::LightModel,
 };
 
-/// The slices of a picture, and what its rays see of each.
+/// The slices of an image, and what its rays see of each.
 pub(crate) struct EpipolarView {
     pub(crate) frame: EpipolarFrame,
     slices: Slices,

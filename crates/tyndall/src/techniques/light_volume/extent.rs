@@ -1,8 +1,8 @@
-//! What a light's mesh spans: faces and cells, and where it ends.
+//! The extent of a light's mesh: faces, cells, and its end beyond all that is seen.
 
 use glam::{DMat4, DVec3};
 
-use super::{gpu::ParamsUniform, tessellation::Square};
+use super::{mesh::ParamsUniform, tessellation::Square};
 use crate::{
     camera::CameraRays,
     frame::{Emitter, Light},
@@ -11,22 +11,22 @@ use crate::{
 
 /// The mesh of one light, from one eye.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Extent {
+pub(super) struct Extent {
     /// Cells a side of a face: texels + 1.
-    pub(crate) cells: [u32; 2],
+    pub(super) cells: [u32; 2],
     /// Faces of the map.
-    pub(crate) faces: u32,
-    /// Of a single map, relative to the eye.
+    pub(super) faces: u32,
+    /// World space, relative to the eye, from a single map's clip space.
     world_from_clip: DMat4,
-    /// See `mesh.wgsl`.
+    /// See `mesh.wesl`.
     far_plane: [f64; 4],
-    /// True where the map's picture is mirrored: right x up points away from the light.
+    /// True where the map is mirrored: right x up points away from the light.
     mirrored: bool,
 }
 
 impl Extent {
     /// For a map of `size` texels a face. `None` without shadow map.
-    pub(crate) fn new(light: &Light, size: [u32; 2], rays: &CameraRays) -> Option<Self> {
+    pub(super) fn new(light: &Light, size: [u32; 2], rays: &CameraRays) -> Option<Self> {
         let faces = shadow::faces(&light.emitter, light.shadow.as_ref()?)?;
         let reach = 1.01 * rays.reach();
         let cells = size.map(|n| n + 1);
@@ -57,18 +57,18 @@ impl Extent {
     }
 
     /// Triangles that the adaptive mesh may have: half as many as the full one, which is drawn beyond that.
-    pub(crate) fn capacity(&self, limits: &wgpu::Limits) -> u32 {
+    pub(super) fn capacity(&self, limits: &wgpu::Limits) -> u32 {
         (self.full_triangles() / 2).min(limits.max_storage_buffer_binding_size / 4) as u32
     }
 
     /// Triangles of the surface with no cells merged.
-    pub(crate) fn full_triangles(&self) -> u64 {
+    pub(super) fn full_triangles(&self) -> u64 {
         let [columns, rows] = self.cells.map(u64::from);
         2 * columns * rows * u64::from(self.faces)
     }
 
-    /// What the shaders read.
-    pub(crate) fn uniform(&self, tolerance: f64, capacity: u32) -> ParamsUniform {
+    /// The shaders' parameters.
+    pub(super) fn uniform(&self, tolerance: f64, capacity: u32) -> ParamsUniform {
         let square = Square::new(self.cells);
         ParamsUniform {
             world_from_clip: self.world_from_clip.as_mat4().to_cols_array_2d(),

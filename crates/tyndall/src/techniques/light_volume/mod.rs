@@ -16,7 +16,7 @@
 //! single map everything is lit, V(infinity) = 1; a cube's surface is closed by itself, and beyond it is shadow.
 //!
 //! A is a closed form for directional and point lights (Chen 2011, eq. 1; Sun et al. 2005), tables by phase
-//! function for the latter; a spot's fading rim takes quadrature (`stretch.wgsl`).
+//! function for the latter; a spot's fading rim takes quadrature (`stretch.wesl`).
 //!
 //! # The mesh
 //!
@@ -42,7 +42,7 @@
 //! # Cost
 //!
 //! Triangles of the map, and fragments: a ray pays for every surface it crosses, seen or not. The list takes half the
-//! full mesh's triangles x 4 bytes at most (64 MiB for 4096^2), the sums a picture of four floats. Coloured glass is
+//! full mesh's triangles x 4 bytes at most (64 MiB for 4096^2), the sums a texture of four floats. Coloured glass is
 //! looked for in blocks of 32 x 32 texels; rays behind such a block are walked through the glass map.
 //!
 //! # Where it fails
@@ -53,12 +53,32 @@
 //! 0.0039 to 0.0052 at most, of suns alone from 0.0011 to 0.0015.
 
 #[cfg(feature = "gpu")]
+mod check;
+#[cfg(feature = "gpu")]
 mod extent;
 #[cfg(feature = "gpu")]
-pub(crate) mod gpu;
+mod gpu;
+#[cfg(feature = "gpu")]
+mod grow;
+#[cfg(feature = "gpu")]
+mod list;
+#[cfg(feature = "gpu")]
+mod mesh;
+#[cfg(feature = "gpu")]
+mod panes;
 mod params;
 #[cfg(feature = "gpu")]
-pub(crate) mod tessellation;
+mod resolve;
+#[cfg(feature = "gpu")]
+mod split;
+#[cfg(feature = "gpu")]
+mod surface;
+#[cfg(feature = "gpu")]
+mod tessellation;
+#[cfg(all(test, feature = "gpu"))]
+mod tests;
+#[cfg(feature = "gpu")]
+mod tree;
 #[cfg(all(test, feature = "gpu"))]
 mod twin;
 

@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "the shadow map as a closed mesh, drawn additively with signed airlight",
     citation: "Billeter, Sintorn & Assarsson, Real Time Volumetric Shadows using Polygonal Light Volumes, HPG 2010",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: true,

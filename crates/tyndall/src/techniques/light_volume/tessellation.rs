@@ -5,33 +5,35 @@
 //! edge, of the two triangles beside it: one more bit a vertex, *split*, says all. The mesh has no cracks iff a split
 //! vertex's own edge is one of the mesh, that is, iff the two vertices whose triangles it halves are split as well.
 //!
-//! 1. `split.wgsl`: a vertex is split where the surface there lies farther than the tolerance from the edge it halves.
+//! 1. `split.wesl`: a vertex is split where the surface there lies farther than the tolerance from the edge it halves.
 //!    The whole border is, so that the sides of a single map and the edges of a cube meet the mesh at every vertex.
-//! 2. `grow.wgsl`, from the smallest edges to the largest: a vertex is split if any of the four is whose edges hang on it.
-//! 3. `list.wgsl`: of the four triangles round a split vertex, those are listed whose own longest edge is not halved.
+//! 2. `grow.wesl`, from the smallest edges to the largest: a vertex is split if any of the four is whose edges hang on it.
+//! 3. `list.wesl`: of the four triangles round a split vertex, those are listed whose own longest edge is not halved.
 //!
 //! The grid has one cell more than the map has texels; it takes the top left part of the square. No triangle lies across
 //! its border, for all of that is split, and those beyond it are left out.
 
-use crate::shader::block;
+use crate::shader::{block, constant};
 
 /// Vertices that one word of the bits stands for.
-pub(super) const WORD: u32 = 32;
+pub(super) fn word() -> u32 {
+    constant("LIGHT_VOLUME_WORD")
+}
 
 block! {
     /// The shaders' `LightVolumeStep`.
     #[derive(PartialEq, Eq)]
-    pub(crate) struct Step = "LightVolumeStep" in "tyndall::techniques::light_volume::grow", checked by light_volume_step_is_laid_out_as_in_wgsl {
-        /// Of the vertices that are looked at: odd multiples of it in one direction or both.
-        pub(crate) spacing: u32,
+    pub(super) struct Step = "LightVolumeStep" in "tyndall::techniques::light_volume::grow", checked by light_volume_step_is_laid_out_as_in_wgsl {
+        /// Distance of the vertices that are looked at: odd multiples of it in one direction or both.
+        pub(super) spacing: u32,
         /// 1: in one direction.
-        pub(crate) is_edge: u32,
+        pub(super) is_edge: u32,
     }
 }
 
 /// The square of a face and its bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Square {
+pub(super) struct Square {
     /// Cells of the face.
     cells: [u32; 2],
     /// Cells a side of the square, a power of two.
@@ -39,33 +41,33 @@ pub(crate) struct Square {
 }
 
 impl Square {
-    pub(crate) fn new(cells: [u32; 2]) -> Self {
+    pub(super) fn new(cells: [u32; 2]) -> Self {
         let side = cells[0].max(cells[1]).next_power_of_two();
         Self { cells, side }
     }
 
-    /// Of a map of this size [texels].
-    pub(crate) fn of_map(size: [u32; 2]) -> Self {
+    /// The square of a map of this size [texels].
+    pub(super) fn of_map(size: [u32; 2]) -> Self {
         Self::new(size.map(|n| n + 1))
     }
 
     /// Bytes of the bits.
-    pub(crate) fn splits_bytes(&self, faces: u32) -> u64 {
+    pub(super) fn splits_bytes(&self, faces: u32) -> u64 {
         4 * u64::from(self.pitch()) * u64::from(self.rows()) * u64::from(faces)
     }
 
     /// Words a row of the bits.
-    pub(crate) fn pitch(&self) -> u32 {
-        (self.side + 1).div_ceil(WORD)
+    pub(super) fn pitch(&self) -> u32 {
+        (self.side + 1).div_ceil(word())
     }
 
     /// Rows of a face's bits.
-    pub(crate) fn rows(&self) -> u32 {
+    pub(super) fn rows(&self) -> u32 {
         self.side + 1
     }
 
-    /// The steps of `grow.wgsl` in order, each with how many vertices a side are looked at.
-    pub(crate) fn steps(&self) -> Vec<(Step, [u32; 2])> {
+    /// The steps of `grow.wesl` in order, each with how many vertices a side are looked at.
+    pub(super) fn steps(&self) -> Vec<(Step, [u32; 2])> {
         let mut steps = Vec::new();
         let mut spacing = 1;
         while spacing < self.side {
@@ -140,17 +142,17 @@ mod tests {
         }
     }
 
-    /// Every edge is passed once each way.
+    /// Every edge is passed once in each direction.
     fn assert_closed(triangles: impl IntoIterator<Item = [Point; 3]>, what: &str) {
         let mut passed: HashMap<[Point; 2], [u32; 2]> = HashMap::new();
         for [a, b, c] in triangles {
             for (from, to) in [(a, b), (b, c), (c, a)] {
                 assert_ne!(from, to, "{what}");
-                let way = usize::from(from > to);
-                passed.entry([from.min(to), from.max(to)]).or_default()[way] += 1;
+                let direction = usize::from(from > to);
+                passed.entry([from.min(to), from.max(to)]).or_default()[direction] += 1;
             }
         }
-        let open = passed.iter().find(|(_, ways)| **ways != [1, 1]);
+        let open = passed.iter().find(|(_, counts)| **counts != [1, 1]);
         assert_eq!(open, None, "{what}");
     }
 

@@ -1,6 +1,6 @@
-//! The adaptive mesh of a face on the CPU, for tests: `split.wgsl`, `grow.wgsl` and `list.wgsl` in f64.
+//! The adaptive mesh of a face on the CPU, for tests: `split.wesl`, `grow.wesl` and `list.wesl` in f64.
 
-use super::tessellation::{Square, Step, WORD};
+use super::tessellation::{Square, Step, word};
 
 /// The three passes on the CPU, of one face.
 pub(super) struct Face {
@@ -25,12 +25,12 @@ fn is_edge([x, y]: [u32; 2]) -> bool {
 }
 
 fn neighbor(v: [u32; 2], k: usize) -> [i32; 2] {
-    let ways = if is_edge(v) {
+    let offsets = if is_edge(v) {
         [[1, 0], [0, -1], [-1, 0], [0, 1]]
     } else {
         [[1, -1], [-1, -1], [-1, 1], [1, 1]]
     };
-    [0, 1].map(|i| v[i] as i32 + spacing(v) as i32 * ways[k % 4][i])
+    [0, 1].map(|i| v[i] as i32 + spacing(v) as i32 * offsets[k % 4][i])
 }
 
 impl Face {
@@ -40,7 +40,7 @@ impl Face {
         let mut face = Self {
             cells,
             square,
-            splits: vec![false; (square.rows() * square.pitch() * WORD) as usize],
+            splits: vec![false; (square.rows() * square.pitch() * word()) as usize],
         };
         for y in 0..=cells[1] {
             for x in 0..=cells[0] {
@@ -60,7 +60,7 @@ impl Face {
     }
 
     fn slot(&self, [x, y]: [i32; 2]) -> Option<usize> {
-        let row = (self.square.pitch() * WORD) as i32;
+        let row = (self.square.pitch() * word()) as i32;
         let inside = x >= 0 && y >= 0 && x < row && y < self.square.rows() as i32;
         inside.then(|| (y * row + x) as usize)
     }

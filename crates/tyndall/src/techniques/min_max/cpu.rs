@@ -4,15 +4,17 @@ use glam::DVec3;
 
 use super::{
     params::{Integrator, Params},
-    svd::{self, SvdRay, TOLERANCE},
+    svd,
+    svd_stretch::{SvdRay, TOLERANCE},
 };
 use crate::{
     camera::Ray,
     epipolar::{
-        cells,
         grid::{EpipolarGrid, GridRay, GridScene},
         low_rank::LowRank,
-        tree::{MinMaxTree, Run},
+        rectify,
+        traverse::Run,
+        tree::MinMaxTree,
     },
     error::PrepareError,
     integrate::{
@@ -52,7 +54,7 @@ struct Forest {
     grid: EpipolarGrid,
     /// One a slice; none where nothing casts shadows.
     trees: Vec<MinMaxTree>,
-    /// Of the svd integrator.
+    /// The svd integrator's, if it integrates.
     factors: Option<LowRank>,
 }
 
@@ -135,13 +137,13 @@ impl Forest {
         let factors = is_svd.then(|| svd::factors(&grid, &scene.optics, params.rank as usize));
         Some(Self {
             grid,
-            trees: shadows.map_or_else(Vec::new, |s| cells::trees(&grid, s)),
+            trees: shadows.map_or_else(Vec::new, |s| rectify::trees(&grid, s)),
             factors,
         })
     }
 
-    /// Appends the stretches of a view ray that are in shadow. What leaves cannot tell is walked, and so is what comes
-    /// before the first leaf that lies wholly within the span, and after the last.
+    /// Appends the stretches of a view ray that are in shadow. Leaves that cannot tell are walked, and so are the
+    /// parts before the first leaf that lies entirely within the span, and after the last.
     fn traverse(
         &self,
         ray: &GridRay,
@@ -155,7 +157,7 @@ impl Forest {
         let end = (to.floor().clamp(0.0, last) as usize).max(first);
         let border = |leaf| self.grid.crossing(ray, leaf).clamp(span[0], span[1]);
         on_map.walk_depth([span[0], border(first)], shades);
-        self.trees[ray.slice].unlit_runs(ray.b, [first, end], |run, leaves| {
+        self.trees[ray.slice].traverse_nodes(ray.b, [first, end], |run, leaves| {
             let part = leaves.map(border);
             match run {
                 Run::Dark => shades.push(Shade {

@@ -13,6 +13,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "1-D min-max mipmaps over epipolar slices, lit stretches in closed form",
     citation: "Chen, Baran, Durand & Jarosz, Real-Time Volumetric Shadows using 1D Min-Max Mipmaps, I3D 2011",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Both,
     reads: Reads {
         glass: true,
@@ -24,10 +25,10 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     is_reference: false,
 };
 
-/// How lit stretches are integrated.
+/// Integrals of lit stretches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// In closed form, or by quadrature where the light has a cone or a picture.
+    /// In closed form, or by quadrature where the light has a cone or a texture.
     #[default]
     Analytic,
     /// By the singular value decomposition of the integrand without visibility.
@@ -37,21 +38,21 @@ pub enum Integrator {
 const INTEGRATORS: &[(&str, Integrator)] =
     &[("analytic", Integrator::Analytic), ("svd", Integrator::Svd)];
 
-/// What is drawn.
+/// Content of the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Show {
     /// The in-scattered light.
     #[default]
-    Light = 0,
+    Light,
     /// Each slice in a colour of its own; black where rays have none.
-    Slices = 1,
+    Slices,
     /// Lit stretches a ray: 0 black, then blue, red, yellow, 16 white.
-    Segments = 2,
+    Segments,
     /// Nodes visited (red) and texels walked (green), in 128ths.
-    Nodes = 3,
+    Nodes,
     /// The rectified map: slices from top to bottom, light rays from left to right, S from black to white; red where
     /// the light never ends.
-    Map = 4,
+    Map,
 }
 
 const SHOWS: &[(&str, Show)] = &[
@@ -67,11 +68,11 @@ const SHOWS: &[(&str, Show)] = &[
 pub struct Params {
     /// Slices and samples.
     pub resolution: Resolution,
-    /// How lit stretches are integrated.
+    /// Integral of lit stretches.
     pub integrator: Integrator,
     /// Terms of the `svd` integrator (1 to 16).
     pub rank: u32,
-    /// What is drawn; the debug views on the GPU only.
+    /// Content of the image; the debug views on the GPU only.
     pub show: Show,
 }
 

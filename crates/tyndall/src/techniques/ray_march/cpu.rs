@@ -1,4 +1,4 @@
-//! The CPU twin of `ray_march.wgsl`, in f64.
+//! The CPU twin of `ray_march.wesl`, in f64.
 
 use glam::DVec3;
 
@@ -73,7 +73,7 @@ impl RayMarch<'_> {
     }
 }
 
-/// Where the samples lie on a ray.
+/// Places of the samples on a ray.
 enum Steps {
     Equal {
         start: f64,

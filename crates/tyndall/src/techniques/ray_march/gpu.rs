@@ -1,19 +1,22 @@
-//! The GPU side: one full-screen pass a light, `ray_march.wgsl`; of a rectangular light maps of its samples, a pass that
-//! marches all of a batch, and one that writes the output.
+//! The order of the passes: a single one, `ray_march.wesl`; for a rectangular light maps of its samples, a pass that marches
+//! all of a batch, and one that writes the output.
 
 use std::sync::Arc;
 
-use super::params::{INFO, Params, Spacing};
+use super::{
+    area::{self, MarchArea},
+    area_resolve::ResolveArea,
+    params::{Params, Spacing},
+};
 use crate::{
     error::PrepareError,
-    frame::Emitter,
     gpu::{
         cache,
         pass::LightPasses,
-        program::{ComputeProgram, ScreenProgram},
+        program::ScreenProgram,
         scope::{LightScope, Shared},
     },
-    passes::imperfect::gpu::{self as imperfect, AreaLight, Maps},
+    passes::imperfect::{area::AreaLight, gpu as imperfect},
     shader::block,
     techniques::{
         info::Reach,
@@ -21,18 +24,11 @@ use crate::{
     },
 };
 
-/// Pixels a side that a workgroup of `area.wgsl` takes.
-const TILE: u32 = 8;
-
-/// Steps of all samples together that an invocation takes in one dispatch: drivers end what runs for too long, Mesa's
-/// lavapipe without a word after 65535 turns of all loops, of which a step takes some.
-const MOST_STEPS: u32 = 16_384;
-
 block! {
     /// The shaders' `RayMarchParams`.
     pub(crate) struct ParamsUniform = "RayMarchParams" in "tyndall::techniques::ray_march::params", checked by ray_march_params_is_laid_out_as_in_wgsl {
         pub(crate) steps: u32,
-        pub(crate) spacing: u32,
+        pub(crate) is_equiangular: u32,
         pad: [u32; 2],
     }
 }
@@ -41,52 +37,35 @@ impl ParamsUniform {
     pub(crate) fn new(params: &Params) -> Self {
         Self {
             steps: params.steps,
-            spacing: match params.spacing {
-                Spacing::Equal => 0,
-                Spacing::Equiangular => 1,
-            },
+            is_equiangular: u32::from(params.spacing == Spacing::Equiangular),
             pad: [0; 2],
         }
     }
 }
 
-/// The technique's shaders.
+/// The technique's programs, by pass.
 pub(crate) struct Programs {
     march: ScreenProgram,
     maps: Arc<imperfect::Programs>,
-    march_area: ComputeProgram,
-    resolve: ScreenProgram,
+    area: MarchArea,
+    resolve: ResolveArea,
 }
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
+        let module = "techniques::ray_march::ray_march";
         Self {
-            march: ScreenProgram::new(
-                device,
-                shared,
-                "techniques::ray_march::ray_march",
-                "ray_march",
-            ),
+            march: ScreenProgram::new(device, shared, module, "ray_march"),
             maps: shared.programs(device),
-            march_area: ComputeProgram::new(
-                device,
-                shared,
-                "techniques::ray_march::area",
-                "ray_march_area",
-            ),
-            resolve: ScreenProgram::new(
-                device,
-                shared,
-                "techniques::ray_march::area_resolve",
-                "ray_march_resolve",
-            ),
+            area: MarchArea::new(device, shared),
+            resolve: ResolveArea::new(device, shared),
         }
     }
 }
 
 impl GpuMethod for Params {
     fn check_light(&self, request: &LightRequest<'_>) -> Result<(), PrepareError> {
-        check(self, request)
+        area::check(self, request)
     }
 
     fn reach(&self) -> Reach {
@@ -119,57 +98,19 @@ fn march_area(
     params: &Params,
     programs: &Programs,
     scope: &mut LightScope<'_>,
-    area: &AreaLight,
+    light: &AreaLight,
     uniform: &wgpu::Buffer,
 ) -> LightPasses {
-    let (count, limits) = (area.positions.len() as u32, scope.device.limits());
-    let at_once = count.min((MOST_STEPS / params.steps).max(1));
-    let maps = Maps::new(&scope.inputs, params.points, at_once, 0, &limits);
-    let sums = scope.storage("marched light", sums_bytes(scope.size));
-    let (buffers, sample) = programs.maps.sample(scope, area, &maps);
+    let maps = area::maps(params, scope, light);
+    let sums = area::sums(scope);
+    let (buffers, sample) = programs.maps.sample(scope, light, &maps);
     let mut passes = vec![sample];
     for index in 0..buffers.batches.values.len() as u32 {
         if let Some(cloud) = scope.inputs.points {
             passes.extend(programs.maps.draw(scope, &buffers, index, cloud.points));
         }
-        let resources = [
-            buffers.batches.binding(index),
-            buffers.samples.as_entire_binding(),
-            buffers.maps.as_entire_binding(),
-            buffers.colors.as_entire_binding(),
-            uniform.as_entire_binding(),
-            sums.as_entire_binding(),
-        ];
-        let [x, y] = scope.size.map(|n| n.div_ceil(TILE));
-        passes.push(scope.compute(&programs.march_area, "ray march", &resources, [x, y, 1]));
+        let area = &programs.area;
+        passes.push(area.pass(scope, &buffers, index, uniform, &sums));
     }
-    let resources = [sums.as_entire_binding()];
-    LightPasses::new(
-        passes,
-        scope.full_screen(&programs.resolve, "resolve", &resources),
-    )
-}
-
-fn sums_bytes(size: [u32; 2]) -> u64 {
-    16 * u64::from(size[0]) * u64::from(size[1])
-}
-
-/// Refuses a rectangular light whose buffers the device cannot bind.
-fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), PrepareError> {
-    let LightRequest {
-        limits,
-        size,
-        index,
-        light,
-        inputs,
-    } = *request;
-    if !matches!(light.emitter, Emitter::Rect { .. }) {
-        return Ok(());
-    }
-    Maps::new(inputs, params.points, 1, 0, limits).check(
-        INFO.name,
-        index,
-        limits,
-        &[("marched light", sums_bytes(size))],
-    )
+    LightPasses::new(passes, programs.resolve.pass(scope, &sums))
 }

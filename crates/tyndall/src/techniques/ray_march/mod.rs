@@ -11,19 +11,23 @@
 //! Steps run over the part of the ray that the light can reach at all: a spot's cone is clipped first.
 //!
 //! A rectangular light is taken as samples (Halton's points), each with N steps and a map of its own: a hemispherical
-//! one that is made of the light's point cloud, see `shadow/imperfect/`. On the GPU only.
+//! one that is made of the light's point cloud, see `passes/imperfect/`. On the GPU only.
 //!
 //! Cost: N shadow-map texels a ray, fetched in the order of the ray, no memory besides the output. It does every
-//! light and medium, pictures and coloured glass (which rectangular lights do not see). Of a rectangular light, N texels a
-//! sample and ray: 256 samples of 64 steps are as much work as 16384 steps of a lamp.
+//! light and medium, textures and coloured glass (which rectangular lights do not see). A rectangular light takes N texels
+//! a sample and ray: 256 samples of 64 steps are as much work as 16384 steps of a lamp.
 //!
-//! Where it fails: shadows thinner than a step are hit or missed by chance, which shows as bands. Doubling N halves them.
+//! Limits: shadows thinner than a step are hit or missed by chance, which shows as bands. Doubling N halves them.
 //! Mesa's lavapipe ends a shader's loops after 65535 turns of all of them together and says nothing: there a local light
 //! is too dark with more than some 20,000 steps. Samples of a rectangular light are spread over dispatches before that.
 
-pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
-pub(crate) mod gpu;
+mod area;
+#[cfg(feature = "gpu")]
+mod area_resolve;
+mod cpu;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod params;
 
 pub use params::*;

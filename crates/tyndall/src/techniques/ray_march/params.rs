@@ -17,6 +17,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
         LightKind::Spot,
         LightKind::Rect,
     ],
+    lights_on_gpu_only: &[LightKind::Rect],
     backends: Backends::Both,
     reads: Reads {
         glass: true,
@@ -33,14 +34,14 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
 pub struct Params {
     /// Steps a ray (1 to 65536).
     pub steps: u32,
-    /// How they are spaced.
+    /// Their spacing.
     pub spacing: Spacing,
-    /// Of a rectangular light: points of the cloud that each sample's map is made of (1 to 2^20); fewer where the cloud
-    /// has fewer.
+    /// Points of the cloud that the map of each sample of a rectangular light is made of (1 to 2^20); fewer where the
+    /// cloud has fewer.
     pub points: u32,
 }
 
-/// How steps are spaced along a ray.
+/// Spacing of steps along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
     /// Equal lengths.

@@ -9,10 +9,10 @@
 //!
 //! - `tolerance`: largest relative error of a stretch's quadrature.
 //!
-//! Cost: seconds a picture. Rectangular lights are sums over their samples. Lights are traced whether or not they
+//! Cost: seconds an image. Rectangular lights are sums over their samples. Lights are traced whether or not they
 //! have a shadow map.
 
-pub(crate) mod cpu;
+mod cpu;
 mod params;
 
 pub use params::*;

@@ -17,6 +17,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
         LightKind::Spot,
         LightKind::Rect,
     ],
+    lights_on_gpu_only: &[],
     backends: Backends::Cpu,
     reads: Reads {
         glass: true,
@@ -33,11 +34,11 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
 pub struct Params {
     /// Largest relative error of the quadrature of a lit stretch (1e-9 to 0.1).
     pub tolerance: f64,
-    /// Where visibility comes from.
+    /// Source of visibility.
     pub visibility: Visibility,
 }
 
-/// Where the reference takes visibility from.
+/// Sources of visibility.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
     /// From the scene's triangles.

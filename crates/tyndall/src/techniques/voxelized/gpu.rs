@@ -15,13 +15,10 @@ use crate::{
     passes::{
         epipolar::{EpipolarUniform, with_scene},
         fill::Fill,
-        voxels::gpu::{self as voxels, Scan},
+        voxels::{grid as voxels, scan::Scan},
     },
     techniques::method::{GpuMethod, LightRequest},
 };
-
-/// Light rays that a workgroup of `voxelize.wgsl` takes.
-const RAYS_A_WORKGROUP: u32 = 64;
 
 /// The technique's shaders.
 pub(crate) struct Programs {
@@ -76,7 +73,7 @@ fn passes(params: &Params, scope: &mut LightScope<'_>) -> LightPasses {
     if has_voxels {
         let clear = programs.fill.dispatch(scope, "no voxel", &bits, 0);
         let resources = [uniform.as_entire_binding(), bits.as_entire_binding()];
-        let groups = [side / RAYS_A_WORKGROUP, side, 1];
+        let groups = programs.voxelize.workgroups([side, side, 1]);
         let voxelize = scope.dispatch(&programs.voxelize, &resources, groups);
         passes.push(Pass::compute(
             scope.pass_name("voxelize"),

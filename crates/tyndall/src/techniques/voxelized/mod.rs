@@ -4,15 +4,15 @@
 //! rays by light rays. A voxel is a bit, dark where the light does not reach, and all bits of a view ray lie in one
 //! row of words. So visibility takes three steps that cost the same whatever the scene: **voxelize** the shadow map (the
 //! end of each light ray sets one voxel, in the row of the view ray that sees it), **scan** (the OR along each light ray,
-//! away from the light: what is behind its end is dark), and **gather** (a pixel reads its row).
+//! away from the light: all behind its end is dark), and **gather** (a pixel reads its row).
 //!
 //! # What is integrated
 //!
 //! Runs of lit voxels of a row become stretches of the view ray, each integrated in closed form: exponentials of the sun,
-//! airlight tables of a lamp, quadrature where a cone fades. Light pictures and coloured glass are looked up in the
+//! airlight tables of a lamp, quadrature where a cone fades. Light textures and coloured glass are looked up in the
 //! middle of every voxel that is lit.
 //!
-//! - Ranges of slices, view rays and light rays are chosen each frame to hold what the picture sees (the paper's dynamic
+//! - Ranges of slices, view rays and light rays are chosen each frame to hold what the image sees (the paper's dynamic
 //!   range selection).
 //! - Along slices the light of the two nearest is interpolated. Along light rays a border lies half-way between two of
 //!   them, which is what interpolation of their bits comes to. Along view rays there is none: visibility changes there once.
@@ -35,12 +35,12 @@
 //!
 //! Relative error before ray-traced truth at 512: a box before a lamp 0.0002, a dragon in a spot 0.0010, a city's streets
 //! 0.0006, mountains under a low sun 0.0012, a hall with a window grid 0.021 (of which its shadow map 0.006), a church with thin windows 0.075.
-//! Of random blocks in maps of 64 texels: 0.068 at most with 64, 0.015 with 256.
+//! With random blocks in maps of 64 texels: 0.068 at most with 64, 0.015 with 256.
 //!
 //! # What was tried
 //!
-//! Comparing distances within 2 pixels of the axis in place of half a pixel: of pictures 48 pixels wide the largest error grew from
-//! 0.014 to 0.033. Larger pictures do not tell the two apart.
+//! Comparing distances within 2 pixels of the axis in place of half a pixel: of images 48 pixels wide the largest error grew from
+//! 0.014 to 0.033. Larger images do not tell the two apart.
 //!
 //! # Where it fails
 //!
@@ -49,7 +49,7 @@
 //! have over it is that a row costs the same in a forest as before a wall.
 
 #[cfg(feature = "gpu")]
-pub(crate) mod gpu;
+mod gpu;
 mod params;
 
 pub use params::*;

@@ -12,6 +12,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
     about: "voxelized shadow volumes: bits over epipolar space, a view ray's visibility in one row",
     citation: "Wyman, Voxelized Shadow Volumes, HPG 2011; Wyman & Dai, Imperfect Voxelized Shadow Volumes, HPG 2013",
     lights: &[LightKind::Directional, LightKind::Point, LightKind::Spot],
+    lights_on_gpu_only: &[],
     backends: Backends::Gpu,
     reads: Reads {
         glass: true,

@@ -1,4 +1,4 @@
-//! The GPU's twins: `epipolar.wgsl`, and the cells of `rectify.wgsl`.
+//! The GPU's twins: `epipolar.wesl`, and the cells of `rectify.wesl`.
 
 use bytemuck::bytes_of;
 use tyndall_testkit::{
@@ -109,7 +109,7 @@ fn wgsl_twin_agrees() {
     let Some(gpu) = device_or_skip("epipolar.wgsl") else {
         return;
     };
-    // Of b and S [steps], of the place among the samples, and of the crossing [share of the ray].
+    // Largest differences of b and S [steps], of the place among the samples, and of the crossing [share of the ray].
     let mut worst = [0.0_f64; 4];
     let (mut rays, mut elsewhere) = (0, 0);
     for (i, case) in Case::many(45).enumerate() {
@@ -172,7 +172,7 @@ fn cell_of(x: array<f32, 2>, level: u32) -> vec4f {
     return vec4f(f32(node & 0xffffu), f32(node >> 16u), used, 0.0);
 }";
 
-/// What `shadow::pyramid::build` draws: the CPU's own pyramid, from its first level on.
+/// The pyramid that `passes::pyramid::build` draws, made on the CPU, from its first level on.
 fn pyramid(gpu: &TestDevice, shadows: &Shadows<'_>) -> wgpu::TextureView {
     let ranges = DepthRanges::new(shadows);
     let (faces, levels) = (shadows.faces().len() as u32, MAP.ilog2());
