@@ -42,7 +42,7 @@ pub(crate) struct LightVariant {
 }
 
 impl LightVariant {
-    /// The same in this medium.
+    /// The variant in this medium.
     pub(crate) fn within(self, medium: &frame::Medium) -> Self {
         let bits = medium.components.iter().map(|c| 1 << c.phase.number());
         Self {

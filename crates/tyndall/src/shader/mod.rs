@@ -40,6 +40,8 @@
 //! | `physics::medium` | scattering of the frame's medium | 0 |
 //! | `physics::airlight` | airlight of point lights from the frame's tables | 0 |
 //! | `camera::camera` | view rays, depth | 0 |
+//! | `gpu::frame` | the frame itself, a pixel's ray, a triangle over the whole picture | 0 |
+//! | `gpu::choice` | small numbers of uniforms that branches and loops hang on | 0 |
 //! | `light::light` | how much of a light reaches a point, its texture, its cone | 0, 1 |
 //! | `light::stretch` | light of a lit stretch of a view ray, in closed form | 0, 1 |
 //! | `shadow::shadow` | shadow maps and coloured glass, looked up by points | 0, 1 |

@@ -186,6 +186,26 @@ impl<'a> Shadows<'a> {
         else {
             return DVec3::ONE;
         };
+        self.glass_texel_tint(glass, face, texel, depth)
+    }
+
+    /// The tint of light that has passed the texel in this column and row of a face, for a point at `depth`, 1 nearest to
+    /// the light; 0 where it is blocked. The glass has the map's size.
+    ///
+    /// # Panics
+    /// If the map has no such texel.
+    pub fn texel_tint(&self, face: usize, [x, y]: [u32; 2], depth: f64) -> DVec3 {
+        let texel = y as usize * self.map.size[0] as usize + x as usize;
+        if !reaches(depth, self.stored_depth(face, texel)) {
+            return DVec3::ZERO;
+        }
+        self.glass.map_or(DVec3::ONE, |glass| {
+            self.glass_texel_tint(glass, face, texel, depth)
+        })
+    }
+
+    /// The product of the tints of a texel's glass before a point at `depth`.
+    fn glass_texel_tint(&self, glass: &GlassMap, face: usize, texel: usize, depth: f64) -> DVec3 {
         (0..glass.layers)
             .map(|layer| self.glass_layer(glass, face, layer, texel))
             .filter(|(layer_depth, _)| !reaches(depth, *layer_depth))
@@ -252,17 +272,17 @@ impl<'a> Shadows<'a> {
     }
 
     /// Width and height of a face [texels].
-    pub(crate) fn size(&self) -> [u32; 2] {
+    pub fn size(&self) -> [u32; 2] {
         self.map.size
     }
 
     /// The faces' projections.
-    pub(crate) fn faces(&self) -> &[Face] {
+    pub fn faces(&self) -> &[Face] {
         &self.faces
     }
 
     /// The face whose axis is nearest to the direction from the centre.
-    pub(super) fn face_of(&self, point: DVec3) -> usize {
+    pub fn face_of(&self, point: DVec3) -> usize {
         if self.faces.len() == 1 {
             return 0;
         }

@@ -103,8 +103,25 @@ fn medium(medium: &Medium) -> Checked {
 }
 
 fn light(field: &str, light: &Light) -> Checked {
+    emitter(field, &light.emitter)?;
+    if let Some(projection) = &light.shadow {
+        shadow(field, &light.emitter, projection)?;
+    }
+    if let Some(placement) = &light.texture {
+        require(
+            TextureMapping::new(&light.emitter, placement)
+                .is_some_and(|m| m.rows.iter().all(|r| r.is_finite()) && m.origin.is_finite()),
+            format!("{field}.texture"),
+            "a placement of this kind of light that is not degenerate",
+            placement,
+        )?;
+    }
+    Ok(())
+}
+
+fn emitter(field: &str, emitter: &Emitter) -> Checked {
     let name = |key: &str| format!("{field}.emitter.{key}");
-    match light.emitter {
+    match *emitter {
         Emitter::Directional {
             direction: travel,
             illuminance,
@@ -129,18 +146,7 @@ fn light(field: &str, light: &Light) -> Checked {
             finite(&name("position"), position)?;
             direction(&name("direction"), axis)?;
             not_negative(&name("intensity"), intensity)?;
-            require(
-                outer > 0.0 && outer < std::f32::consts::FRAC_PI_2,
-                name("outer"),
-                "an angle between 0 and pi/2 rad, both excluded",
-                outer,
-            )?;
-            require(
-                inner >= 0.0 && inner < outer,
-                name("inner"),
-                "an angle from 0 to below outer [rad]",
-                inner,
-            )?;
+            cone(&name, [inner, outer])?;
         }
         Emitter::Rect {
             center,
@@ -166,19 +172,22 @@ fn light(field: &str, light: &Light) -> Checked {
             )?;
         }
     }
-    if let Some(projection) = &light.shadow {
-        shadow(field, &light.emitter, projection)?;
-    }
-    if let Some(placement) = &light.texture {
-        require(
-            TextureMapping::new(&light.emitter, placement)
-                .is_some_and(|m| m.rows.iter().all(|r| r.is_finite()) && m.origin.is_finite()),
-            format!("{field}.texture"),
-            "a placement of this kind of light that is not degenerate",
-            placement,
-        )?;
-    }
     Ok(())
+}
+
+fn cone(name: &dyn Fn(&str) -> String, [inner, outer]: [f32; 2]) -> Checked {
+    require(
+        outer > 0.0 && outer < std::f32::consts::FRAC_PI_2,
+        name("outer"),
+        "an angle between 0 and pi/2 rad, both excluded",
+        outer,
+    )?;
+    require(
+        inner >= 0.0 && inner < outer,
+        name("inner"),
+        "an angle from 0 to below outer [rad]",
+        inner,
+    )
 }
 
 fn shadow(field: &str, emitter: &Emitter, projection: &ShadowProjection) -> Checked {
