@@ -30,10 +30,14 @@ pub(crate) fn clippy() -> anyhow::Result<()> {
 }
 
 pub(crate) fn doc() -> anyhow::Result<()> {
-    cargo(
-        &["doc", "--release", "--workspace", "--no-deps"],
-        &[("RUSTDOCFLAGS", "-D warnings")],
-    )
+    doc_of(&[])
+}
+
+/// Documents the workspace, or what the arguments name.
+fn doc_of(arguments: &[&str]) -> anyhow::Result<()> {
+    let doc = ["doc", "--release", "--workspace", "--no-deps"];
+    let deny = [("RUSTDOCFLAGS", "-D warnings")];
+    cargo(&[&doc[..], arguments].concat(), &deny)
 }
 
 /// Packs the crates that are published as they would be uploaded: fails where one needs what is not published, or its manifest
@@ -133,5 +137,31 @@ mod tests {
         let needs = "[dependencies]\nxtask = { path = \"xtask\" }\n";
         let message = package_with(needs).expect_err("it passed").to_string();
         assert!(message.contains("cargo package"), "{message}");
+    }
+
+    /// Documents a crate of one line under the lints of this workspace.
+    fn doc_of_line(line: &str) -> anyhow::Result<()> {
+        let folder = tempfile::tempdir().unwrap();
+        let workspace = include_str!("../../Cargo.toml");
+        let start = workspace.find("[workspace.lints").unwrap();
+        let end = workspace.find("[profile").unwrap();
+        let package = "[package]\nname = \"a\"\nedition = \"2024\"\n[lints]\nworkspace = true\n";
+        let manifest = folder.path().join("Cargo.toml");
+        let text = format!("{package}[workspace]\n{}", &workspace[start..end]);
+        std::fs::write(&manifest, text).unwrap();
+        std::fs::create_dir(folder.path().join("src")).unwrap();
+        std::fs::write(folder.path().join("src/lib.rs"), line).unwrap();
+        let target = folder.path().join("target");
+        let paths = [&manifest, &target].map(|path| path.display().to_string());
+        doc_of(&["--manifest-path", &paths[0], "--target-dir", &paths[1]])
+    }
+
+    #[test]
+    fn links_that_lead_nowhere_fail() {
+        doc_of_line("//! A [unit](u8), a length \\[m].\n").unwrap();
+        for line in ["//! A [`Nothing`].\n", "//! A length [m].\n"] {
+            let message = doc_of_line(line).expect_err(line).to_string();
+            assert!(message.contains("cargo doc"), "{message}");
+        }
     }
 }
