@@ -4,7 +4,7 @@ use anyhow::{Context, ensure};
 use std::path::Path;
 use std::process::Command;
 
-/// Larger files make every clone slow [bytes].
+/// Larger files make every clone slow \[bytes].
 const MAX_BYTES: usize = 1 << 20;
 
 /// Models, truths and archives, which have other licences or are made by the program.

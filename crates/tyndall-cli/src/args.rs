@@ -70,7 +70,7 @@ pub struct RenderArgs {
     /// Content of the picture; several layers go into one .exr by their names
     #[arg(long = "layer", value_name = "L", default_value = "final")]
     pub layers: Vec<Layer>,
-    /// Exposure of a .png [EV]: light is multiplied by 2^EV; left out: chosen by the picture's brightness
+    /// Exposure of a .png in EV: light is multiplied by 2^EV; left out: chosen by the picture's brightness
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = exposure)]
     pub exposure: Option<f32>,
     /// Write adapter, parameters, milliseconds a pass and bytes as JSON

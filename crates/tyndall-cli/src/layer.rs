@@ -15,7 +15,7 @@ pub enum Layer {
     Transmittance,
     /// The surface or the background, without the medium between it and the eye [W/(m^2 sr)]
     Surface,
-    /// Distance along the view ray to the surface or the far plane [m], the same in all channels
+    /// Distance along the view ray to the surface or the far plane in m, the same in all channels
     Depth,
 }
 

@@ -31,7 +31,7 @@ pub enum TextureError {
     Size {
         /// The file.
         file: PathBuf,
-        /// Its size [texels].
+        /// Its size \[texels].
         size: [usize; 2],
     },
     /// It is to be another texture in each frame, and there is none.

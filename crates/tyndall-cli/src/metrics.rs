@@ -33,15 +33,15 @@ pub enum CompareError {
     /// The pictures have different sizes.
     #[error("expected {} x {} pixels, found {} x {}", expected[0], expected[1], found[0], found[1])]
     Size {
-        /// The truth's width and height [pixels].
+        /// The truth's width and height \[pixels].
         expected: [u32; 2],
-        /// The picture's width and height [pixels].
+        /// The picture's width and height \[pixels].
         found: [u32; 2],
     },
     /// A picture's pixels don't fill its size, or there are none, and nothing must not pass for equal.
     #[error("a picture of {} x {} must have as many pixels and more than 0, found {found}", size[0], size[1])]
     Pixels {
-        /// Width and height [pixels].
+        /// Width and height \[pixels].
         size: [u32; 2],
         /// Number of pixels there are.
         found: usize,

@@ -11,7 +11,7 @@ pub struct Stats<'a> {
     pub adapter: Option<&'a AdapterDescription>,
     /// The technique of all lights that name none; `None` where the shot leaves it to the lights' kinds.
     pub technique: Option<&'a Technique>,
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub size: [u32; 2],
     /// Layers that were asked for.
     pub layers: &'a [Layer],

@@ -5,11 +5,11 @@ use glam::{Affine3A, Quat, Vec3};
 /// The movement of one node relative to its parent. A property without a curve stays as it is at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeAnimation {
-    /// Index into [`Scene::nodes`].
+    /// Index into [`Scene::nodes`](crate::scene::Scene::nodes).
     pub node: usize,
     /// The node's place at rest.
     pub rest: Placement,
-    /// Translation over time [m].
+    /// Translation over time \[m].
     pub translation: Option<Curve<Vec3>>,
     /// Rotation over time, unit quaternions.
     pub rotation: Option<Curve<Quat>>,
@@ -20,7 +20,7 @@ pub struct NodeAnimation {
 /// A place as translation, rotation and scale, applied from right to left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Translation [m].
+    /// Translation \[m].
     pub translation: Vec3,
     /// Rotation, a unit quaternion.
     pub rotation: Quat,
@@ -31,7 +31,7 @@ pub struct Placement {
 /// Values at times: the first key's before it, the last key's after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<T> {
-    /// Times of the keys, rising [s]; at least one.
+    /// Times of the keys, rising \[s]; at least one.
     pub times: Vec<f32>,
     /// One value a key; of cubic curves three: in-tangent, value, out-tangent.
     pub values: Vec<T>,
@@ -82,7 +82,7 @@ impl Animated for Quat {
 }
 
 impl<T: Animated> Curve<T> {
-    /// The value at a time [s]; `None` of a curve without keys.
+    /// The value at a time \[s]; `None` of a curve without keys.
     pub fn at(&self, seconds: f32) -> Option<T> {
         let after = self.times.partition_point(|time| *time <= seconds);
         let last = self.times.len().checked_sub(1)?;
@@ -128,7 +128,7 @@ impl From<Placement> for Affine3A {
 }
 
 impl NodeAnimation {
-    /// The node's place at a time [s], relative to its parent.
+    /// The node's place at a time \[s], relative to its parent.
     pub fn at(&self, seconds: f32) -> Placement {
         fn value<T: Animated>(curve: &Option<Curve<T>>, seconds: f32, rest: T) -> T {
             let curve = curve.as_ref();

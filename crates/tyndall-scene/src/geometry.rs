@@ -4,7 +4,7 @@ use glam::{Affine3A, Mat3A, Vec2, Vec3};
 
 use crate::scene::{Primitive, Scene};
 
-/// An axis-aligned box in world space [m].
+/// An axis-aligned box in world space \[m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Smallest coordinates.
@@ -25,12 +25,12 @@ impl Bounds {
             })
     }
 
-    /// The middle [m].
+    /// The middle \[m].
     pub fn center(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// The edges' lengths [m].
+    /// The edges' lengths \[m].
     pub fn extent(&self) -> Vec3 {
         self.max - self.min
     }
@@ -39,7 +39,7 @@ impl Bounds {
 /// All triangles of a scene in world space, one entry each in every array.
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
-    /// Corners [m].
+    /// Corners \[m].
     pub positions: Vec<[Vec3; 3]>,
     /// Unit normals at the corners.
     pub normals: Vec<[Vec3; 3]>,

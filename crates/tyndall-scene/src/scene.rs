@@ -23,7 +23,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Moves the animated nodes to where they are at a time [s] since the animations began.
+    /// Moves the animated nodes to where they are at a time \[s] since the animations began.
     pub fn pose(&mut self, seconds: f32) {
         for animation in &self.animations {
             if let Some(node) = self.nodes.get_mut(animation.node) {
@@ -60,7 +60,7 @@ pub struct Mesh {
 /// Triangles of one material. All attribute arrays are equally long; all values are finite.
 #[derive(Clone, Debug, Default)]
 pub struct Primitive {
-    /// Positions in mesh space [m].
+    /// Positions in mesh space \[m].
     pub positions: Vec<Vec3>,
     /// Unit normals in mesh space (made from the triangles where the source has none).
     pub normals: Vec<Vec3>,
@@ -108,7 +108,7 @@ pub enum Blocking {
 /// A texture, sampled bilinearly with mip levels.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    /// Width and height [texels], both > 0.
+    /// Width and height \[texels], both > 0.
     pub size: [u32; 2],
     /// sRGB-encoded RGB and linear alpha, row by row from the top left.
     pub texels: Vec<[u8; 4]>,

@@ -19,7 +19,7 @@ pub struct MipTexture {
 /// One level of a [`MipTexture`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct MipLevel {
-    /// Width and height [texels].
+    /// Width and height \[texels].
     pub size: [u32; 2],
     /// sRGB-encoded RGB and linear alpha, row by row from the top left.
     pub texels: Vec<[u8; 4]>,

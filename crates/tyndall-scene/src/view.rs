@@ -6,17 +6,17 @@ use tyndall::{
     frame::{Camera, DepthRange},
 };
 
-/// A ray in world space [m].
+/// A ray in world space \[m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Start [m].
+    /// Start \[m].
     pub origin: DVec3,
     /// Direction, unit length.
     pub direction: DVec3,
 }
 
 impl Ray {
-    /// The point at a distance [m].
+    /// The point at a distance \[m].
     pub fn at(&self, distance: f64) -> DVec3 {
         self.origin + distance * self.direction
     }
@@ -26,7 +26,7 @@ impl Ray {
 #[derive(Clone, Debug)]
 pub struct View {
     rays: CameraRays,
-    /// Distances along the viewing axis between which surfaces are seen [m].
+    /// Distances along the viewing axis between which surfaces are seen \[m].
     planes: [f64; 2],
     depth_range: DepthRange,
 }
@@ -54,12 +54,12 @@ impl View {
     }
 
     /// Distances along a ray of this view between which surfaces are seen: from the near plane to the far one, or to infinity
-    /// where the depth range is infinite [m].
+    /// where the depth range is infinite \[m].
     pub fn span(&self, ray: &Ray) -> [f64; 2] {
         self.planes.map(|depth| depth / self.slope(ray))
     }
 
-    /// The depth-buffer value for a distance along a ray of this view [m].
+    /// The depth-buffer value for a distance along a ray of this view \[m].
     pub fn stored_depth(&self, ray: &Ray, distance: f64) -> f32 {
         self.rays.depth_value(distance * self.slope(ray))
     }

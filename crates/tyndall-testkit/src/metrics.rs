@@ -33,9 +33,9 @@ pub enum CompareError {
     /// The pictures have different sizes.
     #[error("expected {} x {} pixels, found {} x {}", expected[0], expected[1], found[0], found[1])]
     Size {
-        /// The truth's width and height [pixels].
+        /// The truth's width and height \[pixels].
         expected: [usize; 2],
-        /// The picture's width and height [pixels].
+        /// The picture's width and height \[pixels].
         found: [usize; 2],
     },
     /// The lists have different lengths.

@@ -18,7 +18,7 @@ pub enum PictureReadError {
     /// The pixels don't fill the size, or the size is zero.
     #[error("a picture of {} x {} must have {} pixels and more than 0, found {found}", size[0], size[1], size[0] * size[1])]
     Size {
-        /// Width and height [pixels].
+        /// Width and height \[pixels].
         size: [usize; 2],
         /// Number of pixels given.
         found: usize,
@@ -87,7 +87,7 @@ impl Picture {
         Self::new(size, pixels)
     }
 
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub fn size(&self) -> [usize; 2] {
         self.size
     }

@@ -28,7 +28,7 @@ pub enum ShaderError {
     },
 }
 
-/// Where the members of a struct lie [bytes].
+/// Where the members of a struct lie \[bytes].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StructLayout {
     /// The whole struct with its trailing padding.
@@ -37,7 +37,7 @@ pub struct StructLayout {
     pub members: Vec<MemberLayout>,
 }
 
-/// Where one member of a struct lies [bytes].
+/// Where one member of a struct lies \[bytes].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MemberLayout {
     /// Its name.
@@ -125,7 +125,7 @@ macro_rules! rust_layout {
     };
 }
 
-/// Size of what a getter points at [bytes]; for [`rust_layout!`](crate::rust_layout).
+/// Size of what a getter points at \[bytes]; for [`rust_layout!`](crate::rust_layout).
 pub fn size_of_member<T, M>(_: impl Fn(&T) -> &M) -> usize {
     size_of::<M>()
 }

@@ -14,9 +14,9 @@ use tyndall::{
 };
 use wgpu::util::{DeviceExt, DownloadBuffer, TextureDataOrder};
 
-/// Width and height of the image [pixels]; a row of 16-byte pixels is a multiple of 256 bytes, as copies want it.
+/// Width and height of the image \[pixels]; a row of 16-byte pixels is a multiple of 256 bytes, as copies want it.
 const SIZE: [u32; 2] = [96, 32];
-/// Side of the shadow map [texels].
+/// Side of the shadow map \[texels].
 const MAP: u32 = 64;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -19,7 +19,7 @@ pub struct Frame {
 /// A camera: eye, orientation, projection and the convention of its depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// World-space position of the eye (orthographic: of the plane that depth is measured from) [m].
+    /// World-space position of the eye (orthographic: of the plane that depth is measured from) \[m].
     pub eye: [f32; 3],
     /// World-space viewing direction; need not be of unit length, must not be zero.
     pub forward: [f32; 3],
@@ -67,27 +67,27 @@ pub enum Projection {
         half_extent: [f32; 2],
         /// Tangents of the image's centre off the viewing direction; zero but for jitter and stereo.
         center: [f32; 2],
-        /// View depth of the near plane [m] (> 0).
+        /// View depth of the near plane \[m] (> 0).
         near: f32,
-        /// View depth where rays that hit nothing end [m] (> near, finite).
+        /// View depth where rays that hit nothing end \[m] (> near, finite).
         far: f32,
     },
     /// All rays are parallel to the viewing direction and start at view depth 0.
     Orthographic {
-        /// Half the image's width and height [m] (> 0).
+        /// Half the image's width and height \[m] (> 0).
         half_extent: [f32; 2],
-        /// The image's centre off the viewing axis [m].
+        /// The image's centre off the viewing axis \[m].
         center: [f32; 2],
-        /// View depth of the near plane [m].
+        /// View depth of the near plane \[m].
         near: f32,
-        /// View depth where rays that hit nothing end [m] (> near, finite).
+        /// View depth where rays that hit nothing end \[m] (> near, finite).
         far: f32,
     },
 }
 
 impl Camera {
     /// A symmetric perspective camera with reversed depth.
-    /// `yfov` is the whole vertical field of view [rad], `aspect` is width / height, `near` and `far` are view depths [m].
+    /// `yfov` is the whole vertical field of view \[rad], `aspect` is width / height, `near` and `far` are view depths \[m].
     pub fn perspective(
         eye: [f32; 3],
         target: [f32; 3],
@@ -136,31 +136,31 @@ pub enum Emitter {
     },
     /// A point that shines evenly to all sides.
     Point {
-        /// World-space position [m].
+        /// World-space position \[m].
         position: [f32; 3],
         /// Radiant intensity [W/sr].
         intensity: [f32; 3],
     },
     /// A point that shines into a cone, with `KHR_lights_punctual`'s smooth edge.
     Spot {
-        /// World-space position [m].
+        /// World-space position \[m].
         position: [f32; 3],
         /// The cone's axis, the direction in which the light travels; need not be of unit length.
         direction: [f32; 3],
         /// Radiant intensity on the axis [W/sr].
         intensity: [f32; 3],
-        /// Angle from the axis where the light begins to fade [rad] (0 <= inner < outer).
+        /// Angle from the axis where the light begins to fade \[rad] (0 <= inner < outer).
         inner: f32,
-        /// Angle from the axis where the light ends [rad] (< pi/2).
+        /// Angle from the axis where the light ends \[rad] (< pi/2).
         outer: f32,
     },
     /// A rectangle that shines to one side, along cross(edge_x, edge_y), with a cosine.
     Rect {
-        /// World-space middle of the rectangle [m].
+        /// World-space middle of the rectangle \[m].
         center: [f32; 3],
-        /// World-space edge from the texture's left to its right [m].
+        /// World-space edge from the texture's left to its right \[m].
         edge_x: [f32; 3],
-        /// World-space edge from the texture's top to its bottom [m].
+        /// World-space edge from the texture's top to its bottom \[m].
         edge_y: [f32; 3],
         /// Radiance of the bright side [W/(m^2 sr)].
         radiance: [f32; 3],
@@ -232,9 +232,9 @@ pub enum ShadowProjection {
     /// Six square faces round a point light, 90 degrees each, in the order +X, -X, +Y, -Y, +Z, -Z
     /// and with the orientation of WebGPU's and Direct3D's cube textures.
     Cube {
-        /// Distance of each face's near plane along its axis [m] (> 0).
+        /// Distance of each face's near plane along its axis \[m] (> 0).
         near: f32,
-        /// Distance of each face's far plane along its axis [m] (> near, finite).
+        /// Distance of each face's far plane along its axis \[m] (> near, finite).
         far: f32,
         /// True where the map holds 1 at its near plane and 0 at its far plane.
         reversed_depth: bool,
@@ -246,11 +246,11 @@ pub enum ShadowProjection {
 pub enum TexturePlacement {
     /// Directional light: the texture fills this parallelogram, projected along the light.
     Parallelogram {
-        /// World-space middle [m].
+        /// World-space middle \[m].
         center: [f32; 3],
-        /// World-space edge from the texture's left to its right [m].
+        /// World-space edge from the texture's left to its right \[m].
         edge_x: [f32; 3],
-        /// World-space edge from the texture's top to its bottom [m].
+        /// World-space edge from the texture's top to its bottom \[m].
         edge_y: [f32; 3],
     },
     /// Spot light: the texture fills the square round the cone, tan(outer) to each side of the axis.
@@ -294,8 +294,8 @@ pub struct MediumComponent {
 }
 
 impl MediumComponent {
-    /// Fog or cloud of water droplets of this diameter [um], 5 to 50: two components that share the coefficients [1/m], a wide
-    /// lobe and a narrow forward peak; see [`droplets`](crate::phase::droplets::droplets) (Jendersie & d'Eon 2023). `None`
+    /// Fog or cloud of water droplets of this diameter \[um], 5 to 50: two components that share the coefficients [1/m], a wide
+    /// lobe and a narrow forward peak; see [`droplets`] (Jendersie & d'Eon 2023). `None`
     /// where the diameter is out of range.
     pub fn fog_droplets(sigma_s: [f32; 3], sigma_a: [f32; 3], diameter: f32) -> Option<[Self; 2]> {
         let parts = droplets(diameter)?;

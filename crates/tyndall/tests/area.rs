@@ -20,7 +20,7 @@ use tyndall_testkit::{
 };
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
-/// A plate that lies flat at a height, between two corners [m].
+/// A plate that lies flat at a height, between two corners \[m].
 struct Plate {
     height: f64,
     low: [f64; 2],

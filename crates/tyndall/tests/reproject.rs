@@ -13,7 +13,7 @@ use tyndall::{
 };
 use tyndall_testkit::device::device_or_skip;
 
-/// Width and height of the images [pixels].
+/// Width and height of the images \[pixels].
 const SIZE: [u32; 2] = [128, 96];
 const PIXELS: u32 = SIZE[0] * SIZE[1];
 /// Texels of a shadow map's side.

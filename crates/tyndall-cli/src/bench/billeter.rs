@@ -25,9 +25,9 @@ use crate::{
 /// Scene and sizes.
 pub(super) struct LightVolumes {
     pub(super) scene: Subject,
-    /// Width and height of the picture [pixels].
+    /// Width and height of the picture \[pixels].
     pub(super) size: [u32; 2],
-    /// Sides of the shadow maps [texels].
+    /// Sides of the shadow maps \[texels].
     pub(super) maps: &'static [u32],
 }
 

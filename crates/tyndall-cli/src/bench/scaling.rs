@@ -27,9 +27,9 @@ const SCENE: &str = "builtin:church";
 const SIZE: [u32; 2] = [160, 120];
 const MAP: u32 = 1024;
 
-/// Widths of pictures of 4:3 [pixels].
+/// Widths of pictures of 4:3 \[pixels].
 const WIDTHS: [u32; 5] = [80, 160, 240, 320, 480];
-/// Sides of shadow maps [texels].
+/// Sides of shadow maps \[texels].
 const MAPS: [u32; 5] = [256, 512, 1024, 2048, 4096];
 /// Numbers of times that every triangle is cut in four.
 const SUBDIVISIONS: [u32; 3] = [0, 1, 2];

@@ -116,7 +116,7 @@ pub(super) const CITY_RECT: Subject =
 const TEXTURE: &str = "rose-window.png";
 
 impl Subject {
-    /// Loads it, and says what was loaded. `map` is the side of the shadow map [texels].
+    /// Loads it, and says what was loaded. `map` is the side of the shadow map \[texels].
     pub(super) fn load(
         &self,
         assets: Option<&Path>,
@@ -235,7 +235,7 @@ fn coloured_rings() -> LightTexture {
     }
 }
 
-/// The scene's middle and the radius of the sphere round it [m].
+/// The scene's middle and the radius of the sphere round it \[m].
 pub(super) fn sphere(shot_frame: &ShotFrame) -> (Vec3, f32) {
     let bounds = shot_frame.tracer.geometry().bounds();
     let bounds = bounds.unwrap_or(Bounds {

@@ -18,7 +18,7 @@ use crate::{
 /// The paper's tables, and sides of shadow maps.
 pub(super) struct Epipolar {
     pub(super) paper: Paper,
-    /// Sides of the shadow maps of the table of trees [texels].
+    /// Sides of the shadow maps of the table of trees \[texels].
     pub(super) maps: &'static [u32],
 }
 
@@ -106,7 +106,7 @@ fn measure(
     Ok(texts.iter().zip(&times).map(row).collect())
 }
 
-/// Time of marching, trees included [ms].
+/// Time of marching, trees included \[ms].
 fn marching(timing: &Timing) -> f64 {
     let passes = timing.passes.iter();
     passes

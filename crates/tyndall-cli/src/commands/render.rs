@@ -139,7 +139,7 @@ impl<'a> Job<'a> {
         wanted
     }
 
-    /// The exposure of all frames of a sequence [EV]: that of its first, for one that follows each frame flickers.
+    /// The exposure of all frames of a sequence \[EV]: that of its first, for one that follows each frame flickers.
     fn first_exposure(
         &self,
         loaded: &mut LoadedShot,
@@ -153,7 +153,7 @@ impl<'a> Job<'a> {
         Ok(self.exposure(&rendered.layers))
     }
 
-    /// The exposure of a PNG [EV]; says the automatic one, so that it can be given next time.
+    /// The exposure of a PNG \[EV]; says the automatic one, so that it can be given next time.
     fn exposure(&self, layers: &Layers) -> f32 {
         match (self.format, self.args.exposure, layers.first()) {
             (Format::Exr, ..) => 0.0,

@@ -100,7 +100,7 @@ fn pictures(
     }
 }
 
-/// An exposure that burns out nothing but the brightest hundredth [EV]: differences in white can't be seen.
+/// An exposure that burns out nothing but the brightest hundredth \[EV]: differences in white can't be seen.
 fn exposure(picture: &Picture) -> f32 {
     /// From here on the tone mapper compresses.
     const KNEE: f32 = 0.8;

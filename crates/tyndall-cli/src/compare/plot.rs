@@ -18,9 +18,9 @@ use super::{
 };
 use crate::measure::PictureError;
 
-/// Width and height of a plot [pixels].
+/// Width and height of a plot \[pixels].
 const SIZE: (u32, u32) = (640, 440);
-/// Width and height of a legend [pixels].
+/// Width and height of a legend \[pixels].
 const LEGEND: (u32, u32) = (560, 64);
 /// Colours that are told apart by all common kinds of colour vision (Okabe & Ito 2008), on light and on dark paper.
 const SERIES: &[RGBColor] = &[
@@ -136,7 +136,7 @@ pub fn error_against_time(report: &Report, kind: ErrorKind) -> Result<String, Pl
 /// A chart with logarithmic axes.
 type LogChart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// A dashed line from end to end at the error of the converged shadow map [percent].
+/// A dashed line from end to end at the error of the converged shadow map \[percent].
 fn draw_floor(chart: &mut LogChart<'_, '_>, ends: Range<f64>, floor: f64) -> Result<(), Failed> {
     let line = [(ends.start, floor), (ends.end, floor)];
     let style = INK.mix(0.6).stroke_width(1);

@@ -23,7 +23,7 @@ pub struct Comparison {
 pub struct Report {
     /// Shot, scene and machine.
     pub subject: Subject,
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub size: [u32; 2],
     /// When it was measured (UTC, RFC 3339).
     pub date: String,
@@ -34,7 +34,7 @@ pub struct Report {
     pub floor: Option<PictureError>,
     /// The pass that reads depth and shadow map once and writes the output once; `None` on the CPU.
     pub limit: Option<Timing>,
-    /// Exposure of all pictures [EV].
+    /// Exposure of all pictures \[EV].
     pub exposure: f32,
     /// A technique at a setting each, in the order of the table of techniques.
     pub rows: Vec<Row>,

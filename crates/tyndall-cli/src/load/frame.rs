@@ -22,7 +22,7 @@ pub struct ShotFrame {
     pub techniques: TechniqueChoice,
     /// Shadow map and texture of each of the frame's lights.
     pub lights: Vec<LightExtras>,
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub size: [u32; 2],
 }
 
@@ -42,7 +42,7 @@ pub type LazyTracer = LazyLock<Tracer, Box<dyn FnOnce() -> Tracer + Send>>;
 /// A light's shadow map and texture, which the frame's own light doesn't hold.
 #[derive(Clone)]
 pub struct LightExtras {
-    /// Width and height of a face of its shadow map [texels].
+    /// Width and height of a face of its shadow map \[texels].
     pub map_size: [u32; 2],
     /// The texture it shines through; another one where it changes.
     pub texture: Option<Arc<LightTexture>>,

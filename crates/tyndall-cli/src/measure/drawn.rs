@@ -42,7 +42,7 @@ enum Drawn<'a> {
 pub(super) struct OnDevice<'a> {
     pub(super) shot: DeviceShot<'a>,
     pub(super) limit: Limit,
-    /// Each pass that drew them, and its time [ms].
+    /// Each pass that drew them, and its time \[ms].
     passes: Vec<(String, f64)>,
 }
 
@@ -94,7 +94,7 @@ impl<'a> DrawnFrame<'a> {
         }
     }
 
-    /// Each GPU pass that drew the shadow maps and the depth buffer, and its time [ms], of one frame.
+    /// Each GPU pass that drew the shadow maps and the depth buffer, and its time \[ms], of one frame.
     pub fn draw_passes(&self) -> &[(String, f64)] {
         self.device().map_or(&[], |device| &device.passes)
     }

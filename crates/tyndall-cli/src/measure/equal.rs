@@ -97,13 +97,13 @@ pub fn timed_marches() -> [Technique; 2] {
     TIMED_STEPS.map(ray_march)
 }
 
-/// The time of a march [ms], where the [`timed_marches`] took `few` and `many` [ms].
+/// The time of a march \[ms], where the [`timed_marches`] took `few` and `many` \[ms].
 pub fn time_of_steps(steps: u32, [few, many]: [f64; 2]) -> f64 {
     let [n_few, n_many] = TIMED_STEPS.map(f64::from);
     few + (many - few) / (n_many - n_few) * (f64::from(steps) - n_few)
 }
 
-/// The step count that takes `milliseconds`, where the [`timed_marches`] took `few` and `many` [ms].
+/// The step count that takes `milliseconds`, where the [`timed_marches`] took `few` and `many` \[ms].
 pub fn steps_in_time(milliseconds: f64, [few, many]: [f64; 2]) -> u32 {
     let [n_few, n_many] = TIMED_STEPS.map(f64::from);
     let slope = (many - few) / (n_many - n_few);

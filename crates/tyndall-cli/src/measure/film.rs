@@ -22,7 +22,7 @@ pub struct Film<'a> {
 /// Cost of a frame of a take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TakeFrame {
-    /// Time of the effect's passes, by the device's timestamps; of the wall clock where there are none [ms].
+    /// Time of the effect's passes, by the device's timestamps; of the wall clock where there are none \[ms].
     pub milliseconds: f64,
     /// Share of the pixels that were computed, the mean of the lights.
     pub computed: f64,

@@ -34,7 +34,7 @@ impl Default for Budget {
     }
 }
 
-/// Median and quartiles of the frames [ms].
+/// Median and quartiles of the frames \[ms].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// A quarter of the frames took at most this.
@@ -71,18 +71,18 @@ pub struct Timing {
     pub place: Place,
     /// Number of frames that were timed.
     pub frames: usize,
-    /// Wall-clock time of a frame, from its preparation until the device is done [ms].
+    /// Wall-clock time of a frame, from its preparation until the device is done \[ms].
     pub wall: Spread,
-    /// Time of all passes of a frame together, by the device's timestamps [ms]; `None` where there are none.
+    /// Time of all passes of a frame together, by the device's timestamps \[ms]; `None` where there are none.
     pub gpu: Option<Spread>,
-    /// Each pass's name and time [ms], in order, passes of one name added up; empty where there are no timestamps.
+    /// Each pass's name and time \[ms], in order, passes of one name added up; empty where there are no timestamps.
     pub passes: Vec<(String, Spread)>,
-    /// Textures and buffers of the technique itself, its output among them [bytes]; `None` on the CPU.
+    /// Textures and buffers of the technique itself, its output among them \[bytes]; `None` on the CPU.
     pub bytes: Option<u64>,
 }
 
 impl Timing {
-    /// The time that techniques are compared by: that of the passes, or of the wall clock where there are none [ms].
+    /// The time that techniques are compared by: that of the passes, or of the wall clock where there are none \[ms].
     pub fn total(&self) -> Spread {
         self.gpu.unwrap_or(self.wall)
     }

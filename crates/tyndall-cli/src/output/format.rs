@@ -53,7 +53,7 @@ impl Format {
         }
     }
 
-    /// Writes the layers (at least one) to `file`. `ev` is the exposure of a PNG's light [EV].
+    /// Writes the layers (at least one) to `file`. `ev` is the exposure of a PNG's light \[EV].
     ///
     /// # Errors
     /// [`WriteError`] where the system refuses; then there is no file, or the one that was there before.

@@ -11,7 +11,7 @@ const HIGHLIGHT: f32 = 2.5;
 /// Pixels darker than this fraction of the highlight count as that dark: black holes don't brighten the picture.
 const FLOOR: f32 = 1e-3;
 
-/// The exposure [EV] that shows this picture well: the logarithmic mean of its luminance goes to middle grey,
+/// The exposure \[EV] that shows this picture well: the logarithmic mean of its luminance goes to middle grey,
 /// unless that would burn out more than the brightest few percent. 0 for a black picture.
 pub fn automatic_exposure(picture: &Picture) -> f32 {
     let mut values: Vec<f32> = picture

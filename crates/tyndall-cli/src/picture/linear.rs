@@ -3,7 +3,7 @@
 /// Linear RGB, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub size: [u32; 2],
     /// One a pixel.
     pub pixels: Vec<[f32; 3]>,

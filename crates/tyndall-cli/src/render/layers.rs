@@ -21,13 +21,13 @@ pub struct Rendered {
     pub techniques: Vec<Technique>,
     /// GPU passes and their milliseconds, in order; empty on the CPU and without timestamps.
     pub passes: Vec<(String, f64)>,
-    /// Textures and buffers, by what they are for [bytes].
+    /// Textures and buffers, by what they are for \[bytes].
     pub bytes: Vec<(&'static str, u64)>,
     /// Counts of the technique; empty on the CPU.
     pub counts: Vec<(String, u64)>,
 }
 
-/// Length of each pixel's view ray [m].
+/// Length of each pixel's view ray \[m].
 pub(super) fn distances(camera: &Camera, size: [u32; 2], depth: &[f32]) -> Vec<f64> {
     let rays = CameraRays::new(camera, size);
     let pixels = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));

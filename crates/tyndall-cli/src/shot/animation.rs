@@ -70,9 +70,9 @@ pub struct Move {
     pub target: MoveTarget,
     /// The place where the shot names the thing.
     pub location: Location,
-    /// Offsets from where it stands [m].
+    /// Offsets from where it stands \[m].
     pub translate: Vec<[f32; 3]>,
-    /// Rotations about x, then y, then z, through where it stands [degrees].
+    /// Rotations about x, then y, then z, through where it stands \[degrees].
     pub rotate_deg: Vec<[f32; 3]>,
     /// Factors of the medium's coefficients (>= 0).
     pub density: Vec<f32>,

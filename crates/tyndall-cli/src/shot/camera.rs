@@ -13,17 +13,17 @@ use super::{
 pub struct CameraSpec {
     /// Source of everything that is left out.
     pub base: CameraBase,
-    /// World-space position of the eye [m].
+    /// World-space position of the eye \[m].
     pub eye: Option<[f32; 3]>,
-    /// World-space point that the camera looks at [m].
+    /// World-space point that the camera looks at \[m].
     pub target: Option<[f32; 3]>,
     /// World-space direction that is up in the picture.
     pub up: Option<[f32; 3]>,
-    /// Vertical field of view [rad].
+    /// Vertical field of view \[rad].
     pub yfov: Option<f32>,
-    /// View depth of the near plane [m].
+    /// View depth of the near plane \[m].
     pub near: Option<f32>,
-    /// View depth of the far plane [m].
+    /// View depth of the far plane \[m].
     pub far: Option<f32>,
     /// The place where the shot speaks of it.
     pub location: Location,
@@ -46,7 +46,7 @@ pub(crate) struct SceneCameras<'a> {
     pub(crate) named: &'a [(String, Camera)],
     /// The scene's first camera, or one that frames the scene.
     pub(crate) framed: Option<Camera>,
-    /// Distance from a point to the farthest corner of the scene [m].
+    /// Distance from a point to the farthest corner of the scene \[m].
     pub(crate) farthest: &'a dyn Fn([f32; 3]) -> f32,
 }
 

@@ -32,7 +32,7 @@ pub struct Shot {
     pub scene: SceneSource,
     /// The place where the shot names the scene.
     pub scene_location: Location,
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub size: [u32; 2],
     /// The camera of the picture.
     pub camera: CameraSpec,
@@ -50,9 +50,9 @@ pub struct Shot {
     deferred: Vec<Override>,
 }
 
-/// Size of a picture whose shot doesn't say [pixels].
+/// Size of a picture whose shot doesn't say \[pixels].
 const DEFAULT_SIZE: [u32; 2] = [960, 540];
-/// The longest side of a picture [pixels].
+/// The longest side of a picture \[pixels].
 const MAX_SIDE: u32 = 16_384;
 /// The most pixels of a picture: an `Rgba32Float` texture of 1 GiB.
 const MAX_PIXELS: u64 = 1 << 26;

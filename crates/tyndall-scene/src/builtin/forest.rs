@@ -17,14 +17,14 @@ const KINDS: u64 = 6;
 /// Branches of a tree, and leaves (of two triangles) at the end of each.
 const BRANCHES: u32 = 26;
 const LEAVES: u32 = 70;
-/// Half a leaf's length and width [m].
+/// Half a leaf's length and width \[m].
 const LEAF: [f32; 2] = [0.19, 0.10];
-/// Distance between trees, before they are moved at random [m].
+/// Distance between trees, before they are moved at random \[m].
 const SPACING: f32 = 6.0;
 /// Trees to both sides of the middle and along the path.
 const COLUMNS: i32 = 5;
 const ROWS: i32 = 6;
-/// Half the path's width, free of trees [m].
+/// Half the path's width, free of trees \[m].
 const CLEARANCE: f32 = 2.6;
 
 pub(super) fn make() -> Scene {

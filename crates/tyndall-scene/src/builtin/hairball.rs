@@ -12,10 +12,10 @@ const HAIRS: u32 = 2400;
 /// Rings of a hair's tube, and sides.
 const RINGS: u32 = 14;
 const SIDES: u32 = 4;
-/// Middle and radius of the ball [m].
+/// Middle and radius of the ball \[m].
 const CENTER: Vec3 = vec3(0.0, 1.3, 0.0);
 const RADIUS: f32 = 1.0;
-/// Thickness of a hair at its root [m].
+/// Thickness of a hair at its root \[m].
 const THICKNESS: f32 = 0.006;
 
 pub(super) fn make() -> Scene {

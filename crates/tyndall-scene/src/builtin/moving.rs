@@ -7,7 +7,7 @@ use glam::{Affine3A, Quat, Vec3, vec3};
 use super::{builder::SceneBuilder, triangles::Triangles};
 use crate::scene::Scene;
 
-/// Half the floor's side [m].
+/// Half the floor's side \[m].
 const FLOOR: f32 = 6.0;
 /// Things that stand about, in groups of one name.
 const TOYS: usize = 24;

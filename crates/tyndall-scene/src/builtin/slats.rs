@@ -8,14 +8,14 @@ use super::{
 };
 use crate::scene::Scene;
 
-/// Half the room's width and depth, and its height [m].
+/// Half the room's width and depth, and its height \[m].
 const ROOM: Vec3 = vec3(2.5, 2.8, 3.0);
-/// Lower left and upper right corner of the window, across and up [m].
+/// Lower left and upper right corner of the window, across and up \[m].
 const WINDOW: [[f32; 2]; 2] = [[-1.2, 0.8], [1.2, 2.4]];
 const SLATS: u32 = 26;
-/// Half a slat's depth and thickness [m].
+/// Half a slat's depth and thickness \[m].
 const SLAT: [f32; 2] = [0.03, 0.0015];
-/// Tilt of the slats, down towards the room [rad].
+/// Tilt of the slats, down towards the room \[rad].
 const TILT: f32 = 0.35;
 
 pub(super) fn make() -> Scene {

@@ -7,9 +7,9 @@ use crate::scene::Scene;
 
 /// Points a side.
 const POINTS: u32 = 513;
-/// Length of a side [m].
+/// Length of a side \[m].
 const SIDE: f32 = 10_000.0;
-/// Height of the tallest ridges [m].
+/// Height of the tallest ridges \[m].
 const RELIEF: f32 = 1_500.0;
 const SEED: u32 = 17;
 
@@ -36,7 +36,7 @@ pub(super) fn make() -> Scene {
     builder.finish()
 }
 
-/// Position of a grid point, seen from above [m].
+/// Position of a grid point, seen from above \[m].
 fn place(column: u32, row: u32) -> Vec2 {
     let step = SIDE / (POINTS - 1) as f32;
     vec2(column as f32, row as f32) * step - Vec2::splat(0.5 * SIDE)

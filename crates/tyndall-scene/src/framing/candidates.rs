@@ -12,7 +12,7 @@ use crate::{
     view::{Ray, View},
 };
 
-/// Vertical field of view inside and outside [degrees].
+/// Vertical field of view inside and outside \[degrees].
 const INSIDE_YFOV: f32 = 65.0;
 const OUTSIDE_YFOV: f32 = 45.0;
 
@@ -37,7 +37,7 @@ const CLEARANCE: f32 = 0.02;
 
 /// Views from all round a thing.
 const OUTSIDE_VIEWS: u32 = 12;
-/// Pitches below the horizon of a camera outside, and above it of one inside [rad].
+/// Pitches below the horizon of a camera outside, and above it of one inside \[rad].
 const OUTSIDE_PITCH: f32 = 0.35;
 const INSIDE_PITCH: f32 = 0.10;
 
@@ -187,7 +187,7 @@ fn perspective(eye: Vec3, target: Vec3, yfov: f32, aspect: f32, [near, far]: [f3
     )
 }
 
-/// The unit vector of a heading round Y and a pitch above the horizon [rad].
+/// The unit vector of a heading round Y and a pitch above the horizon \[rad].
 fn looking(heading: f32, pitch: f32) -> Vec3 {
     vec3(
         heading.cos() * pitch.cos(),

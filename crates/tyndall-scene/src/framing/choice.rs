@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{geometry::Bounds, scene::Scene, trace::Tracer};
 
-/// Edge of the box that stands for an empty scene's bounds [m].
+/// Edge of the box that stands for an empty scene's bounds \[m].
 const EMPTY_SIZE: f32 = 50.0;
 
 /// A view of a scene.

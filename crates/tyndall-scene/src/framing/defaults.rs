@@ -5,7 +5,7 @@ use tyndall::frame::{Emitter, Medium, MediumComponent, Phase};
 /// Illuminance of a default sun [W/m^2].
 pub(super) const SUN: [f32; 3] = [10.0, 9.5, 9.0];
 
-/// Elevations of the suns that are tried [degrees], and their number round the sky at each.
+/// Elevations of the suns that are tried \[degrees], and their number round the sky at each.
 const SUN_ELEVATIONS: [f32; 4] = [20.0, 33.0, 46.0, 60.0];
 const SUN_AZIMUTHS: u32 = 14;
 
@@ -33,7 +33,7 @@ pub(super) fn suns() -> impl Iterator<Item = Emitter> {
     })
 }
 
-/// A haze for view rays of this length [m].
+/// A haze for view rays of this length \[m].
 pub(super) fn haze(view_length: f32) -> Medium {
     let sigma_t = OPTICAL_DEPTH / view_length;
     Medium {

@@ -21,9 +21,9 @@ const LIT_EYE: f64 = 0.5;
 pub(super) struct Probe {
     /// Row by row from the top left.
     rays: Vec<(Ray, f64)>,
-    /// Distance that shadow rays keep from surfaces and lights [m].
+    /// Distance that shadow rays keep from surfaces and lights \[m].
     margin: f64,
-    /// Longer than any shadow ray [m].
+    /// Longer than any shadow ray \[m].
     diagonal: f64,
 }
 
@@ -50,7 +50,7 @@ impl Probe {
         }
     }
 
-    /// Mean length of the view rays that meet the scene's bounds [m].
+    /// Mean length of the view rays that meet the scene's bounds \[m].
     pub(super) fn mean_length(&self) -> f32 {
         let lengths = self.rays.iter().map(|(_, length)| length);
         let (sum, count) = lengths

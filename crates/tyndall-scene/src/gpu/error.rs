@@ -9,9 +9,9 @@ pub enum GpuSceneError {
     TextureSize {
         /// The texture's name.
         what: String,
-        /// Its size [texels].
+        /// Its size \[texels].
         size: [u32; 2],
-        /// The device's limit [texels].
+        /// The device's limit \[texels].
         limit: u32,
     },
     /// A texture's pixels do not fill its size.
@@ -43,7 +43,7 @@ pub enum GpuSceneError {
         what: String,
         /// Bytes needed.
         found: u64,
-        /// The device's limit [bytes].
+        /// The device's limit \[bytes].
         limit: u64,
     },
     /// Lights are added up by blending, which the device cannot do on this format.

@@ -215,7 +215,7 @@ fn instances_by_mesh(scene: &Scene) -> (Vec<usize>, Vec<Range<u32>>) {
     (nodes, ranges)
 }
 
-/// The larger of a primitive's vertex and index buffer [bytes].
+/// The larger of a primitive's vertex and index buffer \[bytes].
 fn buffer_bytes(primitive: &Primitive) -> u64 {
     let vertices = primitive.positions.len() * size_of::<Vertex>();
     let indices = primitive.indices.len() * size_of::<u32>();

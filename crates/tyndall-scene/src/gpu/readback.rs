@@ -22,7 +22,7 @@ pub enum ReadbackError {
     Size {
         /// Bytes needed.
         found: u64,
-        /// The device's limit [bytes].
+        /// The device's limit \[bytes].
         limit: u64,
     },
     /// The device was lost or could not map the buffer.

@@ -49,7 +49,7 @@ pub struct GBufferTargets {
 }
 
 impl GBufferTargets {
-    /// Makes textures of this size [pixels].
+    /// Makes textures of this size \[pixels].
     ///
     /// # Errors
     /// [`GpuSceneError`] if the size is zero or beyond the device's limit.
@@ -65,7 +65,7 @@ impl GBufferTargets {
         })
     }
 
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -144,7 +144,7 @@ impl ShadowMapTarget {
         })
     }
 
-    /// Width and height of a face [texels].
+    /// Width and height of a face \[texels].
     pub fn size(&self) -> [u32; 2] {
         self.size
     }

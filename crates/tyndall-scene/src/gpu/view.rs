@@ -17,7 +17,7 @@ use tyndall::{
 pub(super) struct ViewUniform {
     /// Clip space from world-space offsets from `origin`, column-major.
     pub(super) clip_from_relative: [[f32; 4]; 4],
-    /// World-space point that vertices are taken relative to [m].
+    /// World-space point that vertices are taken relative to \[m].
     pub(super) origin: [f32; 3],
     _pad: f32,
     /// Direction from a point to the viewer is `xyz - w * (point - origin)`.

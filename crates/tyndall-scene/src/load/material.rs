@@ -11,7 +11,7 @@ use super::{
 };
 use crate::scene::{Blocking, Material, Texture, Wrap};
 
-/// Largest width and height of an image [texels].
+/// Largest width and height of an image \[texels].
 const MAX_IMAGE_SIDE: u32 = 16384;
 
 /// glTF's `alphaCutoff` where it is left out.

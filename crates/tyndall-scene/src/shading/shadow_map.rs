@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 use tyndall::{cpu::CpuLightInputs, frame::Light, shadow::Shadows};
 
-/// Offset along its normal at which a point's shadow is looked up [texels].
+/// Offset along its normal at which a point's shadow is looked up \[texels].
 pub const NORMAL_OFFSET_TEXELS: f64 = 2.0;
 
 /// A shadow map with its glass, looked up with a filter.
 pub(super) struct SurfaceShadow<'a> {
     shadows: Shadows<'a>,
-    /// Width and height of a face [texels].
+    /// Width and height of a face \[texels].
     size: DVec2,
 }
 
@@ -50,7 +50,7 @@ impl<'a> SurfaceShadow<'a> {
             .sum()
     }
 
-    /// Edge of a texel at a point's distance from the light [m].
+    /// Edge of a texel at a point's distance from the light \[m].
     fn texel_size(&self, point: DVec3) -> f64 {
         let face = self.shadows.face_of(point);
         let matrix = self.shadows.faces()[face].clip_from_world;

@@ -4,11 +4,11 @@ use glam::DVec3;
 
 /// A point to be lit.
 pub(super) struct SurfacePoint {
-    /// World-space position [m].
+    /// World-space position \[m].
     pub(super) point: DVec3,
     /// World-space unit normal, facing the viewer.
     pub(super) normal: DVec3,
-    /// Distance from the view ray's start [m].
+    /// Distance from the view ray's start \[m].
     pub(super) distance: f64,
 }
 

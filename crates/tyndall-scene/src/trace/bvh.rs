@@ -20,7 +20,7 @@ const PADDING: f32 = 2e-6;
 /// A tree over some triangles of a scene.
 pub(super) struct Tree {
     bvh: Bvh2,
-    /// Largest coordinate of the triangles [m].
+    /// Largest coordinate of the triangles \[m].
     scale: f32,
     /// Offset of `bvh`'s leaves in the order of all triangles.
     offset: usize,
@@ -58,7 +58,7 @@ impl Tree {
         self.bvh.nodes.is_empty()
     }
 
-    /// Largest coordinate of the triangles [m].
+    /// Largest coordinate of the triangles \[m].
     pub(super) fn scale(&self) -> f64 {
         f64::from(self.scale)
     }
@@ -161,10 +161,10 @@ fn finite_inverse(x: f64) -> f64 {
 struct Slabs {
     origin: Vec3A,
     inverse: Vec3A,
-    /// The ray's distance at `origin` [m].
+    /// The ray's distance at `origin` \[m].
     start: f64,
     slack: f32,
-    /// Distance from `origin` up to which boxes count [m].
+    /// Distance from `origin` up to which boxes count \[m].
     limit: f32,
 }
 

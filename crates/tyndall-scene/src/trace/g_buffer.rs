@@ -15,7 +15,7 @@ use crate::view::{Ray, View};
 /// colours; the view tint is there all the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GBuffer {
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub size: [u32; 2],
     /// Depth-buffer values, in the camera's convention.
     pub depth: Vec<f32>,

@@ -26,7 +26,7 @@ pub(super) struct Texel {
     pub(super) index: usize,
     /// Starts on the near plane.
     pub(super) ray: Ray,
-    /// Distance to the far plane [m].
+    /// Distance to the far plane \[m].
     pub(super) length: f64,
 }
 
@@ -102,7 +102,7 @@ impl MapRays {
         }
     }
 
-    /// The depth that the map stores for a surface at a distance along a texel's ray [m].
+    /// The depth that the map stores for a surface at a distance along a texel's ray \[m].
     pub(super) fn stored_depth(&self, texel: &Texel, distance: f64) -> f32 {
         let clip_from_world = self.faces[texel.face].clip_from_world;
         self.stored(clip_from_world.project_point3(texel.ray.at(distance)).z)

@@ -16,7 +16,7 @@ const RATIOS: [f64; 3] = [
 
 impl Tracer {
     /// `count` points spread evenly over the area of all surfaces that block light, those before holes of alpha-tested
-    /// surfaces left out: world-space position and, last, the radius of the disc each stands for [m]. Points that follow
+    /// surfaces left out: world-space position and, last, the radius of the disc each stands for \[m]. Points that follow
     /// each other are spread evenly, too. Empty where nothing blocks light.
     pub fn point_cloud(&self, count: u32) -> Vec<[f32; 4]> {
         let blockers = |t: &usize| self.surface(*t).can_block();

@@ -137,7 +137,7 @@ struct Cut {
 }
 
 impl Swept {
-    /// `scale` is the scene's largest coordinate [m].
+    /// `scale` is the scene's largest coordinate \[m].
     fn new(ray: &Ray, length: f64, light: LightSource, scale: f64) -> Self {
         let along = ray.direction;
         let to_light = match light {
@@ -305,7 +305,7 @@ struct LineWalk {
     light_at: f64,
     /// 1 if the walk goes in the ray's direction, -1 if it goes against it.
     side: f64,
-    /// Length of the ray on this side of the light [m].
+    /// Length of the ray on this side of the light \[m].
     span: f64,
     length: f64,
 }

@@ -19,7 +19,7 @@ pub struct Tracer {
 /// A point of a surface that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray [m].
+    /// Distance along the ray \[m].
     pub distance: f64,
     /// Index into the arrays of [`Tracer::geometry`].
     pub triangle: usize,
@@ -30,7 +30,7 @@ pub struct Hit {
 /// Glass or a blended surface that a ray passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlassHit {
-    /// Distance along the ray [m].
+    /// Distance along the ray \[m].
     pub distance: f64,
     /// Factor on the light, linear RGB.
     pub tint: DVec3,
@@ -70,7 +70,7 @@ impl Tracer {
         &self.geometry
     }
 
-    /// The first opaque surface at a distance within `range` [m]. Surfaces with holes (MASK) count where the alpha of
+    /// The first opaque surface at a distance within `range` \[m]. Surfaces with holes (MASK) count where the alpha of
     /// their texture's largest level, sampled bilinearly, is at least the cutoff; glass and blended surfaces don't.
     /// Surfaces have two sides. No ray slips through between triangles that share their corners' coordinates.
     pub fn closest(&self, ray: &Ray, range: [f64; 2]) -> Option<Hit> {
@@ -89,7 +89,7 @@ impl Tracer {
         closest
     }
 
-    /// True if any opaque surface is at a distance within `range` [m]; see [`Tracer::closest`].
+    /// True if any opaque surface is at a distance within `range` \[m]; see [`Tracer::closest`].
     pub fn blocked(&self, ray: &Ray, range: [f64; 2]) -> bool {
         let prepared = TriangleRay::new(ray);
         let [from, to] = range;
@@ -102,7 +102,7 @@ impl Tracer {
         blocked
     }
 
-    /// Appends the glass and blended surfaces at distances within `range` [m], in any order; clear glass is left out.
+    /// Appends the glass and blended surfaces at distances within `range` \[m], in any order; clear glass is left out.
     pub fn glass(&self, ray: &Ray, range: [f64; 2], hits: &mut Vec<GlassHit>) {
         let prepared = TriangleRay::new(ray);
         let [from, to] = range;
@@ -124,7 +124,7 @@ impl Tracer {
         !self.glass.is_empty()
     }
 
-    /// The largest coordinate of any surface that changes light [m].
+    /// The largest coordinate of any surface that changes light \[m].
     pub(super) fn scale(&self) -> f64 {
         self.blockers.scale().max(self.glass.scale())
     }

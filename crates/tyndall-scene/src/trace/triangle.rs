@@ -18,7 +18,7 @@ pub(super) struct TriangleRay {
 
 /// The point where a ray meets a triangle.
 pub(super) struct Crossing {
-    /// Distance along the ray [m].
+    /// Distance along the ray \[m].
     pub(super) distance: f64,
     /// Weights of the corners; they add up to 1.
     pub(super) weights: DVec3,

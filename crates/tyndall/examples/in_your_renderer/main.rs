@@ -30,7 +30,7 @@ use tyndall::{
 
 use renderer::Renderer;
 
-/// Width and height of the picture [pixels].
+/// Width and height of the picture \[pixels].
 const SIZE: [u32; 2] = [640, 360];
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
@@ -38,7 +38,7 @@ const EYE: Vec3 = vec3(6.5, 1.8, 9.0);
 const TARGET: Vec3 = vec3(-0.5, 2.6, 0.0);
 const YFOV: f32 = 1.0;
 const NEAR: f32 = 0.1;
-/// Where the haze ends [m]; the projection itself has no far plane.
+/// Where the haze ends \[m]; the projection itself has no far plane.
 const FAR: f32 = 30.0;
 /// The way the sun's light travels, and its illuminance [W/m^2].
 const SUN: Vec3 = vec3(0.35, -0.8, 0.3);

@@ -11,7 +11,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use super::{COLOR, EYE, SIZE, clip_from_world, frame, map_from_world};
 
-/// Side of the shadow map [texels].
+/// Side of the shadow map \[texels].
 const MAP: u32 = 1024;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 

@@ -14,12 +14,12 @@ pub struct Ray {
     pub origin: DVec3,
     /// Unit direction, world space.
     pub direction: DVec3,
-    /// Distance to its end [m].
+    /// Distance to its end \[m].
     pub length: f64,
 }
 
 impl Ray {
-    /// The point at distance `s` [m].
+    /// The point at distance `s` \[m].
     pub fn at(&self, s: f64) -> DVec3 {
         self.origin + s * self.direction
     }
@@ -28,7 +28,7 @@ impl Ray {
 /// A camera's orthonormal frame and its image's size, ready to make rays.
 #[derive(Clone, Debug)]
 pub struct CameraRays {
-    /// World-space eye [m].
+    /// World-space eye \[m].
     pub eye: DVec3,
     /// World-space unit vector to the image's right.
     pub right: DVec3,
@@ -42,7 +42,7 @@ pub struct CameraRays {
 }
 
 impl CameraRays {
-    /// For an image of `size` [pixels]. The camera must have passed validation: directions neither zero nor parallel.
+    /// For an image of `size` \[pixels]. The camera must have passed validation: directions neither zero nor parallel.
     pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
         let forward = reals(camera.forward).normalize_or(DVec3::NEG_Z);
         let right = forward
@@ -83,17 +83,17 @@ impl CameraRays {
         }
     }
 
-    /// The ray through a point of the image [pixels] up to the far plane.
+    /// The ray through a point of the image \[pixels] up to the far plane.
     pub(crate) fn ray_to_far(&self, x: f64, y: f64) -> Ray {
         self.ray_through(x, y, self.planes()[1])
     }
 
-    /// Unit direction of the perspective ray through a point of the image [pixels].
+    /// Unit direction of the perspective ray through a point of the image \[pixels].
     pub(crate) fn direction(&self, x: f64, y: f64) -> DVec3 {
         (self.forward + self.offset(x, y)).normalize()
     }
 
-    /// The point of a perspective image [pixels] that a direction goes through; `None` where it points backwards.
+    /// The point of a perspective image \[pixels] that a direction goes through; `None` where it points backwards.
     pub(crate) fn pixel(&self, direction: DVec3) -> Option<DVec2> {
         let depth = direction.dot(self.forward);
         let (half_extent, center) = self.plane();
@@ -102,7 +102,7 @@ impl CameraRays {
         (depth > 0.0).then(|| (0.5 + 0.5 * ndc * DVec2::new(1.0, -1.0)) * self.size)
     }
 
-    /// The point of the image [pixels], homogeneous, of `(q, w)`: of the point at `q` from the eye where w = 1, of the
+    /// The point of the image \[pixels], homogeneous, of `(q, w)`: of the point at `q` from the eye where w = 1, of the
     /// direction `q` where w = 0. z > 0 before a perspective camera, < 0 behind it.
     #[cfg(feature = "gpu")]
     pub(crate) fn homogeneous_pixel(&self, q: DVec3, w: f64) -> DVec3 {
@@ -124,12 +124,12 @@ impl CameraRays {
         })
     }
 
-    /// Angle that a pixel in the middle of a perspective image takes up vertically [rad].
+    /// Angle that a pixel in the middle of a perspective image takes up vertically \[rad].
     pub(crate) fn pixel_angle(&self) -> f64 {
         (2.0 * self.plane().0.y / self.size.y).atan()
     }
 
-    /// Side of a pixel of an orthographic image [m].
+    /// Side of a pixel of an orthographic image \[m].
     pub(crate) fn pixel_side(&self) -> f64 {
         2.0 * self.plane().0.y / self.size.y
     }
@@ -148,7 +148,7 @@ impl CameraRays {
         matches!(self.projection, Projection::Perspective { .. })
     }
 
-    /// A point of the image [pixels] on the plane at view depth 1, relative to its middle axis.
+    /// A point of the image \[pixels] on the plane at view depth 1, relative to its middle axis.
     fn offset(&self, x: f64, y: f64) -> DVec3 {
         let ndc = DVec2::new(2.0, -2.0) * (DVec2::new(x, y) / self.size - 0.5);
         let (half_extent, center) = self.plane();
@@ -172,7 +172,7 @@ impl CameraRays {
         (reals(half_extent), reals(center))
     }
 
-    /// View depth [m] of a depth-buffer value, clamped to the near and far planes.
+    /// View depth \[m] of a depth-buffer value, clamped to the near and far planes.
     pub fn view_depth(&self, depth: f32) -> f64 {
         let [near, far] = self.planes();
         let from_far = if self.depth_range.is_reversed() {
@@ -188,7 +188,7 @@ impl CameraRays {
         }
     }
 
-    /// The depth buffer's value for a view depth [m] between the near and far planes: the inverse of
+    /// The depth buffer's value for a view depth \[m] between the near and far planes: the inverse of
     /// [`CameraRays::view_depth`].
     pub fn depth_value(&self, view_depth: f64) -> f32 {
         let [near, far] = self.planes();
@@ -204,7 +204,7 @@ impl CameraRays {
         }) as f32
     }
 
-    /// A distance from the eye that no point of any view ray exceeds [m].
+    /// A distance from the eye that no point of any view ray exceeds \[m].
     #[cfg(feature = "gpu")]
     pub(crate) fn reach(&self) -> f64 {
         let [near, far] = self.planes();
@@ -217,7 +217,7 @@ impl CameraRays {
         }
     }
 
-    /// View depths of the near and the far plane [m].
+    /// View depths of the near and the far plane \[m].
     pub fn planes(&self) -> [f64; 2] {
         let (Projection::Perspective { near, far, .. }
         | Projection::Orthographic { near, far, .. }) = self.projection;

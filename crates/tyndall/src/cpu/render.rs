@@ -18,7 +18,7 @@ use crate::{
 /// In-scattered light of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InScatter {
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub size: [u32; 2],
     /// Row by row from the top left: radiance [W/(m^2 sr)] per channel and, last, the mean transmittance to the surface.
     pub pixels: Vec<[f32; 4]>,

@@ -41,7 +41,7 @@ impl Effect {
         })
     }
 
-    /// Makes the textures of a camera of this size [pixels].
+    /// Makes the textures of a camera of this size \[pixels].
     ///
     /// # Errors
     /// Fails if the size is zero or beyond the device's textures.

@@ -1,11 +1,11 @@
 //! Options that an effect is created with, and the errors of its creation.
 
-/// Options that are fixed for the life of an [`Effect`].
+/// Options that are fixed for the life of an [`Effect`](crate::Effect).
 #[derive(Clone, Copy, Debug)]
 pub struct EffectOptions {
-    /// Format of the colour target that [`Effect::composite`] draws on; must be blendable.
+    /// Format of the colour target that [`Effect::composite`](crate::Effect::composite) draws on; must be blendable.
     pub target_format: wgpu::TextureFormat,
-    /// Format of [`EffectView::output`].
+    /// Format of [`EffectView::output`](crate::EffectView::output).
     pub output: OutputPrecision,
 }
 
@@ -34,9 +34,9 @@ pub enum CreateError {
     /// The view is empty or larger than the device's textures.
     #[error("a view must be 1 to {limit} pixels a side, found {} x {}", size[0], size[1])]
     Size {
-        /// The size asked for [pixels].
+        /// The size asked for \[pixels].
         size: [u32; 2],
-        /// The device's limit [pixels].
+        /// The device's limit \[pixels].
         limit: u32,
     },
     /// The device cannot blend the target's format.

@@ -76,7 +76,7 @@ impl EffectView {
         &self.passes
     }
 
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     pub fn size(&self) -> [u32; 2] {
         self.size
     }

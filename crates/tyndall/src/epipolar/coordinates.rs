@@ -13,7 +13,7 @@ pub struct EpipolarFrame {
     axis: DVec3,
     /// Directions of alpha = 0 and alpha = pi/2.
     across: [DVec3; 2],
-    /// Distance of a local light from the eye [m]; `None`: the sun.
+    /// Distance of a local light from the eye \[m]; `None`: the sun.
     distance: Option<f64>,
 }
 
@@ -41,7 +41,7 @@ impl EpipolarFrame {
         self.axis
     }
 
-    /// Distance of a local light from the eye [m]; `None`: the sun.
+    /// Distance of a local light from the eye \[m]; `None`: the sun.
     pub fn distance(&self) -> Option<f64> {
         self.distance
     }
@@ -58,7 +58,7 @@ impl EpipolarFrame {
         beta.cos() * self.axis + beta.sin() * self.outward(alpha)
     }
 
-    /// gamma of the point at distance `s` [m] of a view ray.
+    /// gamma of the point at distance `s` \[m] of a view ray.
     pub fn gamma(&self, beta: f64, s: f64) -> f64 {
         let across = s * beta.sin();
         match self.distance {
@@ -67,7 +67,7 @@ impl EpipolarFrame {
         }
     }
 
-    /// Distance [m] along a view ray where the light ray `gamma` crosses it; infinite where they do not meet.
+    /// Distance \[m] along a view ray where the light ray `gamma` crosses it; infinite where they do not meet.
     pub fn crossing(&self, beta: f64, gamma: f64) -> f64 {
         match self.distance {
             None => gamma / beta.sin(),
@@ -89,7 +89,7 @@ impl EpipolarFrame {
         }
     }
 
-    /// S of a light ray that ends at distance `end` [m] from its point (infinite: never): the point of a view ray on
+    /// S of a light ray that ends at distance `end` \[m] from its point (infinite: never): the point of a view ray on
     /// this light ray is lit iff beta < S.
     pub fn shadow_angle(&self, gamma: f64, end: f64) -> f64 {
         match self.distance {

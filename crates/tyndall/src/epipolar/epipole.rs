@@ -4,13 +4,13 @@ use glam::{DVec2, DVec3};
 
 use crate::{camera::CameraRays, frame::Emitter, physics::reals};
 
-/// A light nearer to the eye than this [m] has no place of its own on the image.
+/// A light nearer to the eye than this \[m] has no place of its own on the image.
 const LEAST_DISTANCE: f64 = 1e-6;
 
 /// The point of the image that all epipolar lines pass through, and the axis that all slices contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Epipole {
-    /// Homogeneous place on the image [pixels], z >= 0; with z = 0 the lines are parallel. An epipole behind the
+    /// Homogeneous place on the image \[pixels], z >= 0; with z = 0 the lines are parallel. An epipole behind the
     /// camera has the place opposite. Its largest component, in units of the image, is 1.
     pub(crate) place: DVec3,
     /// Unit direction of the line through eye and light (orthographic: of the view rays), towards the light.
@@ -20,7 +20,7 @@ pub(crate) struct Epipole {
 }
 
 impl Epipole {
-    /// The epipole of a light that is not a rectangle, of lines that begin and end `margin` [pixels] outside the image.
+    /// The epipole of a light that is not a rectangle, of lines that begin and end `margin` \[pixels] outside the image.
     /// A light without a place of its own (the eye is at the light, or the sun shines along the rays of an orthographic
     /// camera) may take any bundle of lines: they meet in the middle.
     pub(crate) fn new(camera: &CameraRays, size: [u32; 2], emitter: &Emitter, margin: f64) -> Self {
@@ -128,7 +128,7 @@ mod tests {
         CameraRays::new(&camera, SIZE)
     }
 
-    /// Places of the epipole on the image [pixels], behind the camera where z < 0: on it, at its rim, in and beside a
+    /// Places of the epipole on the image \[pixels], behind the camera where z < 0: on it, at its rim, in and beside a
     /// corner, off each side, far away, at infinity.
     fn epipoles() -> Vec<DVec3> {
         let [w, h] = SIZE.map(f64::from);

@@ -2,7 +2,7 @@
 //!
 //! A slice is a half-plane that starts at the axis through the eye: towards the sun, or from the eye to a local light.
 //! `alpha` in [0, 2 pi) is its rotation about the axis, `beta` in [0, pi] the angle of the view ray to the axis, and
-//! `gamma` the light ray: its distance from the axis [m] (sun), or its angle at the light from the axis [rad].
+//! `gamma` the light ray: its distance from the axis \[m] (sun), or its angle at the light from the axis \[rad].
 //! With half-planes neither beta nor gamma changes sign.
 
 mod coordinates;

@@ -28,7 +28,7 @@ pub(crate) fn trees(grid: &EpipolarGrid, shadows: &Shadows<'_>) -> Vec<MinMaxTre
 struct Cells<'a> {
     grid: &'a EpipolarGrid,
     shadows: &'a Shadows<'a>,
-    /// Width and height of a face [texels].
+    /// Width and height of a face \[texels].
     size: [f64; 2],
     depths: DepthRanges<'a>,
 }

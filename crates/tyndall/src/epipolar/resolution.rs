@@ -10,7 +10,7 @@ pub struct Resolution {
     pub slices: u32,
     /// Light rays or cells of them a slice (0 to 16384); 0: as the technique suits the map's texels a side.
     pub samples: u32,
-    /// Radius about the axis within which rays are walked through the shadow map itself [pixels] (0 to 100).
+    /// Radius about the axis within which rays are walked through the shadow map itself \[pixels] (0 to 100).
     pub epipole_radius: f64,
 }
 

@@ -111,7 +111,7 @@ impl Bindings {
         [&self.frame_layout, &self.light_layout]
     }
 
-    /// Bind group 0 of a picture of `size` [pixels]. Without a depth buffer, because the pass draws on it or has none, every
+    /// Bind group 0 of a picture of `size` \[pixels]. Without a depth buffer, because the pass draws on it or has none, every
     /// read of it gives 0. The first frame of a medium with point or spot lights makes its airlight tables.
     pub fn frame_group(
         &self,
@@ -285,7 +285,7 @@ mod tests {
             let linked = Linker::new().link(module).expect("a module of the package");
             Bindings::light_constants(&linked, &light, &LightInputs::default())
         };
-        assert_eq!(constants("tyndall::physics::phase"), []);
+        assert_eq!(constants("tyndall::physics::transmittance"), []);
         let of_light = [("LIGHT_KIND", 1.0), ("LIGHT_TEXTURE", 0.0)];
         assert_eq!(constants("tyndall::light::light"), of_light);
         // Without a map in its inputs, the light is unshadowed.

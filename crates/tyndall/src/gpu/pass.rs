@@ -62,7 +62,7 @@ pub(crate) struct Dispatch {
 /// The number of workgroups of a dispatch.
 pub(crate) enum Workgroups {
     Count([u32; 3]),
-    /// Three numbers that an earlier pass wrote to a buffer, at this offset [bytes].
+    /// Three numbers that an earlier pass wrote to a buffer, at this offset \[bytes].
     Indirect(wgpu::Buffer, u64),
 }
 
@@ -80,7 +80,7 @@ pub(crate) struct FullScreen {
     pub(crate) target: wgpu::TextureView,
     /// If there is one, the target keeps its content, and is drawn on only where this is 1.
     pub(crate) stencil: Option<wgpu::TextureView>,
-    /// If there is one, the draw's arguments are read from this buffer at this offset [bytes], and the target keeps its
+    /// If there is one, the draw's arguments are read from this buffer at this offset \[bytes], and the target keeps its
     /// content.
     pub(crate) gate: Option<(wgpu::Buffer, u64)>,
 }
@@ -97,7 +97,7 @@ pub(crate) struct Draw {
 pub(crate) enum Vertices {
     /// So many vertices, so many times.
     Direct { vertices: u32, instances: u32 },
-    /// Arguments in a buffer, at this offset [bytes].
+    /// Arguments in a buffer, at this offset \[bytes].
     Indirect(wgpu::Buffer, u64),
 }
 

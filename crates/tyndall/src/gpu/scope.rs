@@ -24,7 +24,7 @@ pub(crate) struct LightScope<'a> {
     pub(crate) pool: &'a mut Pool,
     pub(crate) frame: &'a Frame,
     pub(crate) rays: &'a CameraRays,
-    /// Width and height of the picture [pixels].
+    /// Width and height of the picture \[pixels].
     pub(crate) size: [u32; 2],
     pub(crate) index: usize,
     pub(crate) light: &'a Light,

@@ -14,7 +14,7 @@ pub struct CpuLightInputs<'a> {
 /// A shadow map on the CPU: depth in the convention of its [`ShadowProjection`](crate::frame::ShadowProjection).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowMap {
-    /// Width and height of a face [texels].
+    /// Width and height of a face \[texels].
     pub size: [u32; 2],
     /// Face by face (1, or 6 for a cube), row by row from the top left.
     pub depth: Vec<f32>,
@@ -26,7 +26,7 @@ pub struct ShadowMap {
 /// A point is tinted by every layer that lies between it and the light. Clear glass (tint 1) needs no layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GlassMap {
-    /// Width and height of a face [texels].
+    /// Width and height of a face \[texels].
     pub size: [u32; 2],
     /// Number of layers a face.
     pub layers: u32,
@@ -38,7 +38,7 @@ pub struct GlassMap {
 /// A light's texture on the CPU.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightTexture {
-    /// Width and height [texels].
+    /// Width and height \[texels].
     pub size: [u32; 2],
     /// Linear RGB, row by row from the top left.
     pub texels: Vec<[f32; 3]>,

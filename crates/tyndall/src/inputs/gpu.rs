@@ -37,7 +37,7 @@ pub struct LightInputs<'a> {
 /// Surfaces as points, of which maps are made for the samples of a rectangular light.
 #[derive(Clone, Copy)]
 pub struct PointCloud<'a> {
-    /// A storage buffer of four floats a point: world-space position and the radius of the disc it stands for [m]. Any
+    /// A storage buffer of four floats a point: world-space position and the radius of the disc it stands for \[m]. Any
     /// points that follow each other have to be a fair sample of the surfaces: each map takes its own.
     pub points: &'a wgpu::Buffer,
     /// Texels a side of a sample's map (16 to 1024).
@@ -71,7 +71,7 @@ pub enum CountValue {
     Written {
         /// The buffer.
         buffer: wgpu::Buffer,
-        /// The number's offset in it [bytes].
+        /// The number's offset in it \[bytes].
         offset: u64,
     },
 }

@@ -14,7 +14,7 @@ use crate::{
 /// Inputs of the CPU backend besides the [`Frame`]; the GPU backend is handed the same images as textures.
 #[derive(Clone, Copy)]
 pub struct CpuInputs<'a> {
-    /// Width and height of the image [pixels].
+    /// Width and height of the image \[pixels].
     pub size: [u32; 2],
     /// The depth buffer, row by row from the top left, one value a pixel, in the camera's convention.
     pub depth: &'a [f32],

@@ -114,7 +114,7 @@ pub(crate) struct Integral<'a> {
     model: &'a LightModel<'a>,
     scene: &'a CpuScene<'a>,
     tolerance: f64,
-    /// The point nearest to the light: distance along the ray, and from the light [m].
+    /// The point nearest to the light: distance along the ray, and from the light \[m].
     nearest: Option<[f64; 2]>,
 }
 

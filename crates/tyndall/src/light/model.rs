@@ -144,7 +144,7 @@ impl<'a> LightModel<'a> {
         }
     }
 
-    /// The direction in which a spot shines, and the angle of its cone [rad]; `None` for other lights.
+    /// The direction in which a spot shines, and the angle of its cone \[rad]; `None` for other lights.
     pub(crate) fn cone(&self) -> Option<(DVec3, f64)> {
         match self.shape {
             Shape::Spot {

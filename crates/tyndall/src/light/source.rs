@@ -5,6 +5,6 @@
 pub enum LightSource {
     /// Parallel light that travels in this direction (unit length).
     Direction([f64; 3]),
-    /// A point in world space [m].
+    /// A point in world space \[m].
     Position([f64; 3]),
 }

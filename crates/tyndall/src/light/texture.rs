@@ -13,7 +13,7 @@ use crate::{
 /// Maps points to places on the texture: rows of an affine map relative to `origin`.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureMapping {
-    /// World-space origin of the rows [m].
+    /// World-space origin of the rows \[m].
     pub origin: DVec3,
     /// Rows that give u, v, and w; see `kind`.
     pub rows: [DVec3; 3],

@@ -37,7 +37,7 @@ pub enum OccluderError {
         what: &'static str,
         /// Bytes it needs.
         needed: u64,
-        /// The device's limit [bytes].
+        /// The device's limit \[bytes].
         limit: u64,
     },
 }

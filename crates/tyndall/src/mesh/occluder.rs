@@ -26,7 +26,7 @@ pub struct Occluder<'a> {
 }
 
 impl OccluderMesh {
-    /// Welds equal positions, finds the edges and uploads. `positions` are in mesh space [m]; `indices` come three a
+    /// Welds equal positions, finds the edges and uploads. `positions` are in mesh space \[m]; `indices` come three a
     /// triangle, in either orientation. Triangles without an area and repeated ones are left out.
     ///
     /// # Errors

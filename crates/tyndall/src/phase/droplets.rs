@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 
 use super::table::Phase;
 
-/// Diameters that the fit is made for [um].
+/// Diameters that the fit is made for \[um].
 pub const DIAMETERS: RangeInclusive<f32> = 5.0..=50.0;
 
-/// The phase function of water droplets of this diameter [um] as two phase functions and their shares, which add up to 1: a
+/// The phase function of water droplets of this diameter \[um] as two phase functions and their shares, which add up to 1: a
 /// wide [`Draine`](Phase::Draine) lobe and a narrow [`HenyeyGreenstein`](Phase::HenyeyGreenstein) peak. `None` outside of
 /// [`DIAMETERS`].
 ///

@@ -39,7 +39,7 @@ pub const TABLE_WIDTH: usize = 256;
 /// Rows of a table: optical depth.
 pub const TABLE_HEIGHT: usize = 128;
 
-/// A point light is a ball of this radius [m] inside which 1 / d^2 grows no further: a view ray through the light's
+/// A point light is a ball of this radius \[m] inside which 1 / d^2 grows no further: a view ray through the light's
 /// very position stays finite.
 pub const LIGHT_RADIUS: f64 = 1e-3;
 
@@ -53,9 +53,9 @@ pub struct AirlightTable {
 /// A point light seen from a view ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointOnRay {
-    /// Distance along the ray of the point nearest to the light [m]; negative where the light is behind the eye.
+    /// Distance along the ray of the point nearest to the light \[m]; negative where the light is behind the eye.
     pub projection: f64,
-    /// Distance of the light from that point [m].
+    /// Distance of the light from that point \[m].
     pub height: f64,
 }
 
@@ -71,7 +71,7 @@ impl PointOnRay {
         }
     }
 
-    /// Distance of the light from the ray's point at distance `s` [m].
+    /// Distance of the light from the ray's point at distance `s` \[m].
     fn distance(&self, s: f64) -> f64 {
         (s - self.projection).hypot(self.height)
     }
@@ -113,7 +113,7 @@ impl AirlightTable {
         &self.texels
     }
 
-    /// Airlight of the stretch `[a, b]` of a ray [m], for one channel: the integral of
+    /// Airlight of the stretch `[a, b]` of a ray \[m], for one channel: the integral of
     /// `exp(-sigma_t (s + d)) rho / d^2`. Times sigma_s and the light's intensity it is a radiance.
     pub fn segment(&self, sigma_t: f64, light: PointOnRay, [a, b]: [f64; 2]) -> f64 {
         let u = sigma_t * light.height;

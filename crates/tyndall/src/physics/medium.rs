@@ -35,7 +35,7 @@ impl Optics {
             .sum()
     }
 
-    /// Transmittance per channel over a distance [m].
+    /// Transmittance per channel over a distance \[m].
     pub fn transmittance(&self, distance: f64) -> DVec3 {
         (-self.sigma_t * distance).exp()
     }

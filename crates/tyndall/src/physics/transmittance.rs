@@ -1,11 +1,11 @@
 //! Extinction along a straight path (Beer 1852) and its integral.
 
-/// Share of light left after `distance` [m] at extinction `sigma_t` [1/m].
+/// Share of light left after `distance` \[m] at extinction `sigma_t` [1/m].
 pub fn transmittance(sigma_t: f64, distance: f64) -> f64 {
     (-sigma_t * distance).exp()
 }
 
-/// Integral of the transmittance over the distances `a..b` [m]: `(exp(-sigma_t a) - exp(-sigma_t b)) / sigma_t`,
+/// Integral of the transmittance over the distances `a..b` \[m]: `(exp(-sigma_t a) - exp(-sigma_t b)) / sigma_t`,
 /// and `b - a` as `sigma_t` goes to zero.
 ///
 /// This is the whole integral of a segment lit by a directional light (Chen 2011, eq. 1), but for constants.

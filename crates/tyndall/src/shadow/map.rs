@@ -213,7 +213,7 @@ impl<'a> Shadows<'a> {
             .product()
     }
 
-    /// Distance [m] from a point of a light ray, along its unit direction, at which the map ends the ray; infinite
+    /// Distance \[m] from a point of a light ray, along its unit direction, at which the map ends the ray; infinite
     /// where it does not. A local light's ray starts at the light; the sun's may end before the point.
     pub(crate) fn light_end(&self, origin: DVec3, direction: DVec3) -> f64 {
         let Some(line) = self.line(origin, direction) else {
@@ -239,7 +239,7 @@ impl<'a> Shadows<'a> {
         Some(ShadowLine { uv, face, c0, c1 })
     }
 
-    /// The part of the ray's stretch `[a, b]` [m] that a single map covers; beyond it everything is lit.
+    /// The part of the ray's stretch `[a, b]` \[m] that a single map covers; beyond it everything is lit.
     pub(crate) fn covered(&self, origin: DVec3, direction: DVec3, [a, b]: [f64; 2]) -> [f64; 2] {
         if self.faces.len() > 1 {
             return [a, b];
@@ -266,12 +266,12 @@ impl<'a> Shadows<'a> {
         [from, to]
     }
 
-    /// Side of a face [texels], the longer one.
+    /// Side of a face \[texels], the longer one.
     pub(crate) fn side(&self) -> u32 {
         self.map.size[0].max(self.map.size[1])
     }
 
-    /// Width and height of a face [texels].
+    /// Width and height of a face \[texels].
     pub fn size(&self) -> [u32; 2] {
         self.map.size
     }
@@ -334,7 +334,7 @@ pub(crate) struct ShadowLine {
 }
 
 impl ShadowLine {
-    /// Distance [m] from the ray's point to the plane of this depth: `z(t) = depth w(t)`.
+    /// Distance \[m] from the ray's point to the plane of this depth: `z(t) = depth w(t)`.
     pub(crate) fn end(&self, depth: f64) -> f64 {
         (depth * self.c0.w - self.c0.z) / (self.c1.z - depth * self.c1.w)
     }

@@ -5,9 +5,9 @@ use crate::light::LightSource;
 /// A stretch of a view ray whose light is blocked or tinted by one surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shade {
-    /// Distance from the ray's origin where it begins [m].
+    /// Distance from the ray's origin where it begins \[m].
     pub start: f64,
-    /// Distance from the ray's origin where it ends [m] (>= start).
+    /// Distance from the ray's origin where it ends \[m] (>= start).
     pub end: f64,
     /// The factor of the light; zero where the surface blocks.
     pub tint: [f64; 3],

@@ -37,7 +37,7 @@ struct Piece {
 }
 
 impl RayOnMap<'_> {
-    /// Appends what the map blocks of the ray's points within a part of its span [m], in order; stretches that touch are one.
+    /// Appends what the map blocks of the ray's points within a part of its span \[m], in order; stretches that touch are one.
     pub(crate) fn walk_depth(&self, part: [f64; 2], shades: &mut Vec<Shade>) {
         for (piece, part) in self.pieces_of(part) {
             self.shadows
@@ -64,7 +64,7 @@ impl RayOnMap<'_> {
 }
 
 impl Shadows<'_> {
-    /// Appends what the map blocks and the glass tints of the ray's points between `a` and `b` [m], in order of
+    /// Appends what the map blocks and the glass tints of the ray's points between `a` and `b` \[m], in order of
     /// distance for each texel; blocked stretches that touch are one.
     pub fn walk(
         &self,
@@ -78,7 +78,7 @@ impl Shadows<'_> {
         ray.walk_tints(span, shades);
     }
 
-    /// The ray's points between `a` and `b` [m], ready to be walked in parts.
+    /// The ray's points between `a` and `b` \[m], ready to be walked in parts.
     pub(crate) fn on_map(
         &self,
         origin: glam::DVec3,

@@ -49,7 +49,7 @@ pub(crate) trait CpuMethod {
 #[derive(Clone, Copy)]
 pub(crate) struct LightRequest<'a> {
     pub(crate) limits: &'a wgpu::Limits,
-    /// Width and height of the view [pixels].
+    /// Width and height of the view \[pixels].
     pub(crate) size: [u32; 2],
     /// The light's index in the frame.
     pub(crate) index: usize,

@@ -28,7 +28,7 @@ pub(crate) struct History {
 #[derive(Clone, Copy)]
 pub(crate) struct Viewpoint {
     pub(crate) camera: CameraUniform,
-    /// World-space eye [m].
+    /// World-space eye \[m].
     pub(crate) eye: DVec3,
 }
 

@@ -14,7 +14,7 @@ pub(super) fn program(device: &wgpu::Device, shared: &Shared) -> ComputeProgram 
     ComputeProgram::new(device, shared, "temporal::tiles", "tiles")
 }
 
-/// Workgroups for an image of this size [pixels].
+/// Workgroups for an image of this size \[pixels].
 pub(super) fn workgroups(program: &ComputeProgram, size: [u32; 2]) -> [u32; 3] {
     let [columns, rows] = size.map(|n| n.div_ceil(constant("REUSE_TILE")));
     program.workgroups([columns, rows, 1])

@@ -3,7 +3,7 @@
 use super::require::{Checked, require};
 use crate::{error::PrepareError, frame::Frame, inputs::GlassMap, integrate::CpuInputs};
 
-/// The longest side of an image or texture [pixels] that is accepted at all, so that sizes never overflow.
+/// The longest side of an image or texture \[pixels] that is accepted at all, so that sizes never overflow.
 const MAX_SIDE: u32 = 1 << 16;
 
 /// Checks that one input set a light was given, and what each light needs.

@@ -39,7 +39,7 @@ impl Uploaded {
         Self::sized(SIZE, gpu, stage)
     }
 
-    /// The textures of a stage of this size [pixels].
+    /// The textures of a stage of this size \[pixels].
     pub(crate) fn sized(size: [u32; 2], gpu: &TestDevice, stage: &Stage) -> Self {
         let light = |(light, pictures): (&tyndall::frame::Light, &StageLight)| {
             let faces = match light.shadow {

@@ -21,7 +21,7 @@ pub(crate) mod gpu;
 #[cfg(feature = "gpu")]
 pub(crate) mod run;
 
-/// Width and height of the images [pixels].
+/// Width and height of the images \[pixels].
 pub(crate) const SIZE: [u32; 2] = [48, 36];
 const MAP: u32 = 64;
 const GLASS_LAYERS: u32 = 2;
@@ -447,7 +447,7 @@ pub(crate) fn epipole_stages() -> Vec<(Stage, Vec3)> {
     stages.into_iter().map(place).collect()
 }
 
-/// Distance of every pixel from the epipole [pixels], as its sine to the axis.
+/// Distance of every pixel from the epipole \[pixels], as its sine to the axis.
 pub(crate) fn off_axis(stage: &Stage, axis: Vec3) -> Vec<f64> {
     let rays = CameraRays::new(&stage.frame.camera, SIZE);
     let axis = axis.as_dvec3();

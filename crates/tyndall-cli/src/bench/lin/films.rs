@@ -18,12 +18,12 @@ use crate::{
 /// Scenes, sizes and numbers of frames.
 pub(in crate::bench) struct Films {
     pub(in crate::bench) scenes: &'static [(Subject, &'static str)],
-    /// Width and height of the picture [pixels], and the side of the shadow map [texels].
+    /// Width and height of the picture \[pixels], and the side of the shadow map \[texels].
     pub(in crate::bench) size: [u32; 2],
     pub(in crate::bench) map: u32,
     /// Frames that are timed.
     pub(in crate::bench) timed: u32,
-    /// Width and height of pictures that are compared pixel by pixel [pixels], and how many.
+    /// Width and height of pictures that are compared pixel by pixel \[pixels], and how many.
     pub(in crate::bench) compared_size: [u32; 2],
     pub(in crate::bench) compared: u32,
 }

@@ -18,9 +18,9 @@ use crate::{
 
 /// Techniques that a camera walks by: brute force, and the fastest at exact pictures.
 pub(super) const WALKERS: [&str; 2] = ["ray-march", "min-max"];
-/// Distance of the eye from frame to frame [mm].
+/// Distance of the eye from frame to frame \[mm].
 const STEPS: [f64; 2] = [2.0, 10.0];
-/// The camera's turn from frame to frame [degrees].
+/// The camera's turn from frame to frame \[degrees].
 const TURN: f64 = 0.05;
 /// Errors that a pixel may be kept with as the camera walks.
 const TOLERANCES: [f32; 2] = [0.02, 0.1];
@@ -69,7 +69,7 @@ pub(super) fn walk(
     Ok(rows)
 }
 
-/// The film of a camera that goes `step` a frame [mm], without reuse first, then with every tolerance; and its subject.
+/// The film of a camera that goes `step` a frame \[mm], without reuse first, then with every tolerance; and its subject.
 fn walking<'a>(
     films: &Films,
     technique: &str,

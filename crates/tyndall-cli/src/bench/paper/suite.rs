@@ -15,13 +15,13 @@ pub(in crate::bench) struct Paper {
     /// The techniques it compares, whether they are there or not: a name, then any parameters as `key=value`.
     pub(in crate::bench) techniques: &'static [&'static str],
     pub(in crate::bench) scenes: &'static [Subject],
-    /// Width and height of the pictures [pixels].
+    /// Width and height of the pictures \[pixels].
     pub(in crate::bench) size: [u32; 2],
     /// Errors are measured on pictures this many times smaller on each side; 1 where quality depends on the size.
     pub(in crate::bench) reduction: u32,
-    /// Side of the shadow map [texels].
+    /// Side of the shadow map \[texels].
     pub(in crate::bench) map: u32,
-    /// Sides of shadow maps of a second table [texels], with a far spot light in the sun's place; none: no such table.
+    /// Sides of shadow maps of a second table \[texels], with a far spot light in the sun's place; none: no such table.
     pub(in crate::bench) spot_maps: &'static [u32],
 }
 

@@ -79,7 +79,7 @@ pub(super) fn costs(
     })
 }
 
-/// A technique's row; `of_hard` is the time of the hard shadow volume [ms], `side` the voxels a side of its `grids`.
+/// A technique's row; `of_hard` is the time of the hard shadow volume \[ms], `side` the voxels a side of its `grids`.
 fn cost_row(
     technique: &Technique,
     timing: &Timing,

@@ -19,7 +19,7 @@ use crate::{
 pub(in crate::bench) struct AreaLights {
     /// The scene of table 1 comes first.
     pub(in crate::bench) scenes: &'static [Subject],
-    /// Width and height of the pictures [pixels].
+    /// Width and height of the pictures \[pixels].
     pub(in crate::bench) size: [u32; 2],
     /// Samples of the light, table by table row; the last is that of the other tables.
     pub(in crate::bench) samples: &'static [u32],
@@ -91,7 +91,7 @@ pub(super) fn with_samples(mut shot_frame: ShotFrame, count: u32) -> ShotFrame {
     shot_frame
 }
 
-/// Median of the passes of a stage [ms].
+/// Median of the passes of a stage \[ms].
 pub(super) fn of_stage(timing: &Timing, passes: &[&str]) -> f64 {
     let is_of = |name: &str| passes.iter().any(|pass| name.starts_with(pass));
     let of_stage = timing.passes.iter().filter(|(name, _)| is_of(name));

@@ -77,7 +77,7 @@ impl Browser {
         self.script(body).as_str().unwrap().to_owned()
     }
 
-    /// Position in the window of a share of an element's width and height [pixels].
+    /// Position in the window of a share of an element's width and height \[pixels].
     fn point(&self, id: &str, [x, y]: [f64; 2]) -> [i64; 2] {
         let point = self.script(&format!(
             "const b = document.getElementById('{id}').getBoundingClientRect();
@@ -116,7 +116,7 @@ impl Browser {
         );
     }
 
-    /// The divider's own value, and the cut of the right picture [percent].
+    /// The divider's own value, and the cut of the right picture \[percent].
     fn divider(&self) -> [f64; 2] {
         let found = self.script(
             "return [Number(divider.getAttribute('aria-valuenow')),

@@ -20,7 +20,7 @@ const BUDGET: usize = 18_000_000;
 
 /// Everything that the script compares.
 pub(super) struct Viewer {
-    /// Width and height [pixels].
+    /// Width and height \[pixels].
     size: [u32; 2],
     /// The reference's mean, in which all values are measured [W/(m^2 sr)].
     unit: f64,

@@ -209,7 +209,7 @@ impl DeviceView {
         counts(&self.view, &gpu.device, &gpu.queue)
     }
 
-    /// Textures and buffers of the technique [bytes].
+    /// Textures and buffers of the technique \[bytes].
     pub(crate) fn bytes(&self) -> u64 {
         self.view.bytes()
     }

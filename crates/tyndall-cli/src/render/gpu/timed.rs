@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{backend::Gpu, failure::Failure, load::ShotFrame};
 
-/// Times of one frame [ms].
+/// Times of one frame \[ms].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FrameTime {
     /// Wall clock.
@@ -86,7 +86,7 @@ impl TimedView {
 }
 
 impl DeviceShot<'_> {
-    /// Moves the scene to a frame, draws its light maps and G-buffer, and waits. Returns each pass's name and time [ms], where
+    /// Moves the scene to a frame, draws its light maps and G-buffer, and waits. Returns each pass's name and time \[ms], where
     /// there are timestamps.
     ///
     /// # Errors

@@ -219,7 +219,7 @@ impl World {
         })
     }
 
-    /// Textures, by what they are for [bytes].
+    /// Textures, by what they are for \[bytes].
     pub(crate) fn bytes(&self) -> [(&'static str, u64); 3] {
         let lights = self.lights.iter().map(LightTargets::bytes).sum();
         let occluders = self.occluders.get().map_or(0, SceneOccluders::bytes);

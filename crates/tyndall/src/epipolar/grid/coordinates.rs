@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use crate::{camera::Ray, epipolar::slices::Slices};
 
-/// Farther than anything [m].
+/// Farther than anything \[m].
 const FAR: f64 = 1e30;
 
 /// A camera's slices of one light.
@@ -15,7 +15,7 @@ pub(crate) struct EpipolarGrid {
     /// Orthographic and sun: the view's angle to the axis as a cotangent.
     pub(crate) cotangent: f64,
     pub(crate) orthographic: bool,
-    /// Distance of a local light from the eye [m]; `None`: the sun.
+    /// Distance of a local light from the eye \[m]; `None`: the sun.
     pub(crate) local: Option<f64>,
     /// Point that view rays are measured from: the eye; orthographic and local: the light.
     pub(crate) origin: DVec3,
@@ -36,7 +36,7 @@ pub(crate) struct EpipolarGrid {
     /// Range of gamma over which tints are summed.
     pub(crate) tint_range: [f64; 2],
     pub(crate) beta_range: [f64; 2],
-    /// Length of the longest view ray, from start to far plane [m].
+    /// Length of the longest view ray, from start to far plane \[m].
     pub(crate) longest: f64,
 }
 
@@ -59,14 +59,14 @@ pub(crate) fn angle_scale(across: f64, along: f64) -> f64 {
 }
 
 impl GridRay {
-    /// A perspective camera's view ray's angle to the axis [rad].
+    /// A perspective camera's view ray's angle to the axis \[rad].
     pub(crate) fn beta(&self) -> f64 {
         self.c[1].atan2(self.t[1])
     }
 }
 
 impl EpipolarGrid {
-    /// Distance of a local light from the eye [m]; `None`: the sun.
+    /// Distance of a local light from the eye \[m]; `None`: the sun.
     pub(crate) fn distance(&self) -> Option<f64> {
         self.local
     }
@@ -81,7 +81,7 @@ impl EpipolarGrid {
         self.beta_range
     }
 
-    /// The farthest that light may come from a local light to a perspective camera's eye [m]: over the far plane.
+    /// The farthest that light may come from a local light to a perspective camera's eye \[m]: over the far plane.
     pub(crate) fn longest_path(&self) -> f64 {
         2.0 * self.longest + self.local.unwrap_or(0.0)
     }
@@ -130,7 +130,7 @@ impl EpipolarGrid {
         })
     }
 
-    /// gamma of the view ray's point at distance `s` [m].
+    /// gamma of the view ray's point at distance `s` \[m].
     pub(crate) fn gamma_at(&self, ray: &GridRay, s: f64) -> f64 {
         let across = ray.c[0] + s * ray.c[1];
         match self.local {
@@ -139,17 +139,17 @@ impl EpipolarGrid {
         }
     }
 
-    /// Place among the samples of the view ray's point at distance `s` [m].
+    /// Place among the samples of the view ray's point at distance `s` \[m].
     pub(crate) fn sample_at(&self, ray: &GridRay, s: f64) -> f64 {
         (self.gamma_at(ray, s) - self.gamma_start) / self.gamma_step
     }
 
-    /// Distance [m] along the view ray where it crosses the border before a sample; infinite where they do not meet.
+    /// Distance \[m] along the view ray where it crosses the border before a sample; infinite where they do not meet.
     pub(crate) fn crossing(&self, ray: &GridRay, sample: usize) -> f64 {
         self.crossing_at(ray, self.gamma(sample))
     }
 
-    /// Distance [m] along the view ray where it crosses a light ray; infinite where they do not meet.
+    /// Distance \[m] along the view ray where it crosses a light ray; infinite where they do not meet.
     pub(crate) fn crossing_at(&self, ray: &GridRay, gamma: f64) -> f64 {
         if self.local.is_none() {
             return (gamma - ray.c[0]) / ray.c[1];
@@ -188,7 +188,7 @@ impl EpipolarGrid {
     }
 
     /// The range of S, on the scale of the nodes, of all light rays between two gammas that end `ends[0]` to `ends[1]`
-    /// [m] from their points (infinite: never): a point of view ray b is lit iff b < S.
+    /// \[m] from their points (infinite: never): a point of view ray b is lit iff b < S.
     pub(crate) fn shadow_range(&self, gammas: [f64; 2], ends: [f64; 2]) -> [f64; 2] {
         let least = |end| {
             gammas
@@ -215,7 +215,7 @@ impl EpipolarGrid {
         [least(ends[0]), greatest].map(|s| (s - self.b_start) * self.b_scale)
     }
 
-    /// S of the light ray `gamma` that ends `end` [m] from its point.
+    /// S of the light ray `gamma` that ends `end` \[m] from its point.
     fn shadow(&self, gamma: f64, end: f64) -> f64 {
         // An infinite end counts as a far one, so that nothing is infinite times nothing.
         let end = end.min(FAR);

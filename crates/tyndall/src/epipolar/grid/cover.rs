@@ -14,7 +14,7 @@ use crate::{
     light::LightSource,
 };
 
-/// A slice's turn about the axis [rad] that the bounds of its cells still hold for.
+/// A slice's turn about the axis \[rad] that the bounds of its cells still hold for.
 const WIDEST_SLICE: f64 = 0.25;
 
 /// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".

@@ -14,10 +14,10 @@ pub(crate) const SVD_LEAST_SINE: f64 = 0.1;
 /// The part of a scene that a grid covers.
 pub(crate) struct GridScene<'a> {
     pub(crate) camera: &'a CameraRays,
-    /// Width and height of the image [pixels].
+    /// Width and height of the image \[pixels].
     pub(crate) size: [u32; 2],
     pub(crate) light: LightSource,
-    /// The direction in which a spot shines, and the angle of its cone [rad].
+    /// The direction in which a spot shines, and the angle of its cone \[rad].
     pub(crate) cone: Option<(DVec3, f64)>,
     /// The light's shadow map; none: nothing casts shadows, and only tints need slices.
     pub(crate) faces: &'a [Face],
@@ -159,7 +159,7 @@ impl EpipolarGrid {
     }
 }
 
-/// Points of an image [pixels], from border to border.
+/// Points of an image \[pixels], from border to border.
 pub(super) fn image_grid([width, height]: [u32; 2]) -> impl Iterator<Item = (f64, f64)> {
     const GRID: u32 = 16;
     let place = |n: u32, size: u32| f64::from(n * size) / f64::from(GRID);

@@ -41,7 +41,7 @@ block! {
 /// A rectangle taken as samples, and what their maps are made of.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AreaLight {
-    /// World-space positions [m].
+    /// World-space positions \[m].
     pub(crate) positions: Vec<DVec3>,
     /// Unit direction in which it shines.
     pub(crate) normal: DVec3,

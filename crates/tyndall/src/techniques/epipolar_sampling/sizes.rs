@@ -20,7 +20,7 @@ pub(crate) struct Sizes {
     pub(super) columns: u32,
     /// Levels of a tree above its leaves; 0: no trees.
     pub(super) levels: u32,
-    /// Width and height of what samples are unwarped to [pixels].
+    /// Width and height of what samples are unwarped to \[pixels].
     pub(super) coarse: [u32; 2],
     pub(super) size: [u32; 2],
 }

@@ -30,7 +30,7 @@
 //! # Parameters
 //!
 //! - `steps`: over the whole ray's reach (512); a middle takes its share.
-//! - `show`: the light, or the bounds: nearest (red), farthest (green) and the marched stretch (blue) [m].
+//! - `show`: the light, or the bounds: nearest (red), farthest (green) and the marched stretch (blue) \[m].
 //!
 //! # Cost
 //!

@@ -38,7 +38,7 @@ pub struct Params {
 pub enum Show {
     /// The in-scattered light.
     Light,
-    /// The marched stretch: its start (red), end (green) and length (blue) [m].
+    /// The marched stretch: its start (red), end (green) and length (blue) \[m].
     Bounds,
 }
 

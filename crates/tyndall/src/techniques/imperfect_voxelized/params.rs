@@ -71,7 +71,7 @@ pub struct Params {
     pub weighting: Weighting,
     /// All samples at once, as many as the device binds; or each in passes of its own.
     pub batched: bool,
-    /// Radius about a sample's axis within which distances are compared [pixels] (0 to 100).
+    /// Radius about a sample's axis within which distances are compared \[pixels] (0 to 100).
     pub epipole_radius: f64,
 }
 

@@ -1,7 +1,7 @@
 //! `incremental`: incremental integration (Baran, Chen, Ragan-Kelley, Durand, Lehtinen 2010), as Chen 2011 outlines it.
 //!
 //! In a slice, let the view rays come in the order of growing beta: a sample gamma of the rectified shadow map is lit
-//! until beta reaches S[gamma], and dark ever after. So the lit samples are kept in a partial-sum tree (Fenwick 1994)
+//! until beta reaches S\[gamma], and dark ever after. So the lit samples are kept in a partial-sum tree (Fenwick 1994)
 //! from which they are taken one by one, and a ray's integral is a prefix sum up to its end, whatever lies between. The
 //! integrand is the sum of a few products `B_i(beta) Gamma_i(gamma)` (Chen 2011, eq. 5), so that one set of sums serves
 //! all rays. The papers resample the image to slices; here each pixel goes to its nearest slice as it is, which

@@ -18,7 +18,7 @@ pub(crate) struct Rectified {
 pub(crate) struct Row {
     start: f64,
     step: f64,
-    /// S [rad]; sample i stands for gamma from `self.gamma(i)` to `self.gamma(i + 1)`.
+    /// S \[rad]; sample i stands for gamma from `self.gamma(i)` to `self.gamma(i + 1)`.
     pub(crate) angles: Vec<f32>,
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct EpipolarView {
 pub(crate) struct InSlice {
     pub(crate) slice: usize,
     pub(crate) beta: f64,
-    /// The part of the ray that the light reaches and the map covers [m].
+    /// The part of the ray that the light reaches and the map covers \[m].
     pub(crate) span: [f64; 2],
 }
 

@@ -84,7 +84,7 @@ impl Extent {
     }
 }
 
-/// Position of a local light [m].
+/// Position of a local light \[m].
 fn light_position(emitter: &Emitter) -> Option<DVec3> {
     match *emitter {
         Emitter::Point { position, .. } | Emitter::Spot { position, .. } => {

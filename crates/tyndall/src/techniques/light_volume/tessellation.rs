@@ -46,7 +46,7 @@ impl Square {
         Self { cells, side }
     }
 
-    /// The square of a map of this size [texels].
+    /// The square of a map of this size \[texels].
     pub(super) fn of_map(size: [u32; 2]) -> Self {
         Self::new(size.map(|n| n + 1))
     }

@@ -1,8 +1,8 @@
 //! `min-max`: 1-D min-max mipmaps (Chen, Baran, Durand, Jarosz 2011).
 //!
 //! Light and view rays of one slice through the eye and the light meet in one plane. The shadow map, resampled to
-//! slices, becomes one row S[gamma] a slice, and a point of the view ray b at the light ray gamma is lit iff
-//! b < S[gamma]: a search in one dimension, sped up by a complete binary tree of (min, max) over the row. The tree is
+//! slices, becomes one row S\[gamma] a slice, and a point of the view ray b at the light ray gamma is lit iff
+//! b < S\[gamma]: a search in one dimension, sped up by a complete binary tree of (min, max) over the row. The tree is
 //! traversed without recursion, up at most one level a step, and adjoining nodes in the same state make one stretch (the
 //! paper's figure 5 and section 3.5).
 //!

@@ -52,7 +52,7 @@ impl<'a> SvdRay<'a> {
         })
     }
 
-    /// The light of a stretch [m] that nothing shades.
+    /// The light of a stretch \[m] that nothing shades.
     pub(super) fn over(&self, stretch: [f64; 2]) -> DVec3 {
         let [a, b] = stretch.map(|s| self.grid.gamma_at(&self.place, s));
         if self.model.is_plain() {

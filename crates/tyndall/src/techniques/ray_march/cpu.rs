@@ -113,7 +113,7 @@ impl Steps {
         }
     }
 
-    /// The distance of sample `i` and the length of ray it stands for [m].
+    /// The distance of sample `i` and the length of ray it stands for \[m].
     fn step(&self, i: u32) -> (f64, f64) {
         let i = f64::from(i) + 0.5;
         match *self {

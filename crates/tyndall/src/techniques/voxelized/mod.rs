@@ -25,7 +25,7 @@
 //! # Parameters
 //!
 //! - `resolution`: slices, view rays and light rays of the grid, each; a power of two.
-//! - `epipole_radius`: view rays this near to the axis compare distances [pixels].
+//! - `epipole_radius`: view rays this near to the axis compare distances \[pixels].
 //!
 //! # Cost
 //!

@@ -29,7 +29,7 @@ pub(crate) const INFO: TechniqueInfo = TechniqueInfo {
 pub struct Params {
     /// Slices, view rays and light rays, each (a power of two from 64 to 1024).
     pub resolution: u32,
-    /// Radius about the axis within which distances are compared [pixels] (0 to 100).
+    /// Radius about the axis within which distances are compared \[pixels] (0 to 100).
     pub epipole_radius: f64,
 }
 
