@@ -44,18 +44,6 @@ pub(super) fn link(path: &str) -> Linked {
     let linker = MODULES
         .iter()
         .fold(package, |linker, (path, text)| linker.module(*path, *text));
-    let mut linker = linker; // TEMP
-    if let Ok(dir) = std::env::var("SHADE_DIR") {
-        // TEMP
-        for f in std::fs::read_dir(dir).unwrap() {
-            // TEMP
-            let f = f.unwrap().path(); // TEMP
-            linker = linker.module(
-                f.file_stem().unwrap().to_string_lossy().into_owned(),
-                std::fs::read_to_string(&f).unwrap(),
-            ); // TEMP
-        } // TEMP
-    } // TEMP
     linker.link(path).expect("modules that link")
 }
 
