@@ -148,6 +148,7 @@ impl Bindings {
 
     /// Pipeline constants of a kind of light: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND` and `SHADOW_GLASS`, without those
     /// that the linked shader does not declare, for wgpu refuses them. Lights of equal constants share pipelines.
+    /// `MEDIUM_PHASES` is not among them: such pipelines do any medium.
     pub fn light_constants(
         shader: &Linked,
         light: &Light,
@@ -158,7 +159,7 @@ impl Bindings {
         // The kind does not depend on the eye.
         let (_, variant) = LightUniform::new(&light, glam::DVec3::ZERO, has_glass);
         let mut constants = variant.constants().to_vec();
-        constants.retain(|(name, _)| shader.declares(name));
+        constants.retain(|(name, _)| *name != "MEDIUM_PHASES" && shader.declares(name));
         constants
     }
 
