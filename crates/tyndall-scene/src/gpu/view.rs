@@ -11,7 +11,7 @@ use tyndall::{
     shadow::faces,
 };
 
-/// `View` of `view.wesl`.
+/// `View` of `view.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct ViewUniform {

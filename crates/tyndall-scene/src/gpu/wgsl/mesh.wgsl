@@ -1,7 +1,5 @@
 // Mesh vertices, placed in the world and projected into the view.
 
-import package::gpu::view::view;
-
 struct MeshVertex {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,

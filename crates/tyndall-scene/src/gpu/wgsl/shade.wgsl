@@ -1,21 +1,14 @@
 // One light's share of the radiance that surfaces send to the eye: Lambert; shading/light.rs is its twin, shading/mod.rs has
 // the formula.
 
-import package::gpu::shade_light::{shade_ambient, shade_direct};
-import package::gpu::shade_shadow::shade_visibility;
-import package::gpu::shade_surface::{shade_base_color, shade_normal, shade_view_tint};
-import tyndall::camera::camera::camera_is_far;
-import tyndall::gpu::frame::{frame_depth, frame_full_screen, frame_ray};
-import tyndall::constants::PI;
-
 @fragment
 fn shade_light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
-    if camera_is_far(textureLoad(frame_depth, pixel, 0)) {
+    let from_far = shade_depth_from_far(pixel);
+    if from_far == 0.0 {
         return vec4f(0.0);
     }
-    let ray = frame_ray(position);
-    let point = ray.origin + ray.length * ray.direction;
+    let point = shade_point(pixel, from_far);
     let normal = textureLoad(shade_normal, pixel, 0).xyz;
     var irradiance = shade_direct(point, normal);
     if any(irradiance > vec3f(0.0)) {
@@ -24,5 +17,5 @@ fn shade_light_fragment(@builtin(position) position: vec4f) -> @location(0) vec4
     irradiance += shade_ambient(point, normal);
     let albedo = textureLoad(shade_base_color, pixel, 0).rgb;
     let tint = textureLoad(shade_view_tint, pixel, 0).rgb;
-    return vec4f(tint * albedo / PI * irradiance, 0.0);
+    return vec4f(tint * albedo / SHADE_PI * irradiance, 0.0);
 }

@@ -1,9 +1,5 @@
 // The first opaque surface that each pixel sees.
 
-import package::gpu::material::{material, material_base_color, material_is_hole};
-import package::gpu::mesh::{MeshFragment, mesh_normalize};
-import package::gpu::view::view_direction_to_viewer;
-
 override G_BUFFER_MASKED: bool;
 
 struct GBufferTexel {

@@ -1,8 +1,5 @@
 // Depth seen from a light; only masked surfaces need a fragment stage.
 
-import package::gpu::material::material_is_hole;
-import package::gpu::mesh::MeshFragment;
-
 @fragment
 fn shadow_map_masked_fragment(fragment: MeshFragment) {
     if material_is_hole(fragment.uv) {

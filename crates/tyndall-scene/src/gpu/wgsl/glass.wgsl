@@ -1,9 +1,6 @@
 // Coloured glass seen from a light, layer by layer (depth peeling: Everitt 2001, "Interactive order-independent
 // transparency").
 
-import package::gpu::material::{material_finest_base_color, material_tint};
-import package::gpu::mesh::MeshFragment;
-
 override GLASS_REVERSED_DEPTH: bool;
 // The first layer has nothing before it.
 override GLASS_FIRST_LAYER: bool;
