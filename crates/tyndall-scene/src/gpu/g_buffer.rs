@@ -39,7 +39,7 @@ pub(super) struct GBufferPipelines {
 impl GBufferPipelines {
     pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
         let layout = Layouts::pipeline(device, &[&layouts.view, &layouts.material]);
-        let g_buffer = shaders::G_BUFFER.module(device);
+        let g_buffer = shaders::module(device, shaders::G_BUFFER);
         let surface = |label, masked: bool| {
             ByDepth::new(|reversed_depth| {
                 MeshPipeline {
@@ -56,7 +56,7 @@ impl GBufferPipelines {
                 .create(device)
             })
         };
-        let tint = shaders::VIEW_TINT.module(device);
+        let tint = shaders::module(device, shaders::VIEW_TINT);
         Self {
             opaque: surface("g-buffer opaque", false),
             masked: surface("g-buffer masked", true),

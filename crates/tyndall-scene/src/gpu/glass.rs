@@ -31,7 +31,7 @@ impl GlassPipelines {
     pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
         let group = bind_group_layout(device);
         let layout = Layouts::pipeline(device, &[&layouts.view, &layouts.material, &group]);
-        let module = shaders::GLASS.module(device);
+        let module = shaders::module(device, shaders::GLASS);
         let pipeline = |label, first: bool| {
             ByDepth::new(|reversed_depth| {
                 MeshPipeline {

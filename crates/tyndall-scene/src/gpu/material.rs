@@ -8,7 +8,7 @@ use wgpu::{BindGroup, BindGroupLayout, Device, Queue, TextureView};
 use super::{binding::uniform_entry, error::GpuSceneError, texture};
 use crate::scene::{Blocking, Material, Scene, Texture, Wrap};
 
-/// `Material` of `material.wgsl`.
+/// `Material` of `material.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct MaterialUniform {

@@ -131,7 +131,7 @@ impl SceneRenderer {
         timer: Option<&mut PassTimer>,
     ) {
         self.shade.record(
-            &self.scene.device,
+            (&self.scene.device, &self.scene.queue),
             encoder,
             target,
             g_buffer,

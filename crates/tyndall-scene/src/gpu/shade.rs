@@ -1,26 +1,28 @@
 //! Lit surfaces: the sky and emission first, then one light after the other added.
 
+use std::sync::{Mutex, PoisonError};
+
 use tyndall::{
     LightInputs,
-    camera::CameraRays,
     frame::{Frame, Light},
-    gpu::PassTimer,
+    gpu::{Bindings, PassTimer},
+    shader::Linked,
 };
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{
-    BindGroup, BindGroupEntry, BindGroupLayout, BindGroupLayoutEntry, BindingResource, BindingType,
-    BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
-    CommandEncoder, Device, RenderPipeline, Sampler, TextureFormat, TextureFormatFeatureFlags,
-    TextureSampleType, TextureView, TextureViewDimension,
+    BindGroup, BindGroupEntry, BindGroupLayout, BindGroupLayoutEntry, BindingType, BlendComponent,
+    BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, CommandEncoder, Device,
+    PipelineCompilationOptions, PipelineLayout, Queue, RenderPipeline, ShaderModule, TextureFormat,
+    TextureFormatFeatureFlags, TextureSampleType, TextureView, TextureViewDimension,
 };
 
 use super::{
     binding::uniform_entry,
     error::GpuSceneError,
     pipeline::{Layouts, cleared},
-    shaders::{self, Shader},
-    targets::{Absent, GBufferTargets},
-    uniforms::{ShadeLightUniform, ShadeViewUniform},
+    shaders,
+    targets::GBufferTargets,
+    uniforms::{ShadeLightUniform, ShadeUniform},
 };
 
 /// Adds to the target's colour.
@@ -46,13 +48,47 @@ pub struct SurfaceLights<'a> {
     pub visibility: &'a [Option<&'a TextureView>],
 }
 
+/// Values of the overrides of a kind of light.
+type Constants = Vec<(&'static str, f64)>;
+
 pub(super) struct ShadePipelines {
-    view_layout: BindGroupLayout,
+    /// Groups 0 and 2.
+    bindings: Bindings,
+    /// Group 1.
+    surface_layout: BindGroupLayout,
+    /// Group 3.
     light_layout: BindGroupLayout,
     base: RenderPipeline,
-    light: RenderPipeline,
-    picture_sampler: Sampler,
-    absent: Absent,
+    light: LightPipelines,
+}
+
+/// A pipeline a kind of light, made when the first such light is drawn.
+struct LightPipelines {
+    linked: Linked,
+    module: ShaderModule,
+    layout: PipelineLayout,
+    format: TextureFormat,
+    made: Mutex<Vec<(Constants, RenderPipeline)>>,
+}
+
+impl LightPipelines {
+    fn get(&self, device: &Device, constants: Constants) -> RenderPipeline {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = made.iter().find(|(of, _)| *of == constants) {
+            return found.clone();
+        }
+        let pipeline = ShadePipeline {
+            module: &self.module,
+            entry_point: "shade_light_fragment",
+            layout: &self.layout,
+            constants: &constants,
+            format: self.format,
+            blend: Some(ADD),
+        }
+        .create(device);
+        made.push((constants, pipeline.clone()));
+        pipeline
+    }
 }
 
 impl ShadePipelines {
@@ -64,124 +100,129 @@ impl ShadePipelines {
         {
             return Err(GpuSceneError::TargetFormat { format });
         }
-        let view_layout = view_layout(device);
-        let light_layout = light_layout(device);
-        let pipeline = |shader, entry_point, groups: &[&BindGroupLayout], blend| {
-            create_pipeline(device, shader, entry_point, groups, format, blend)
+        let bindings = Bindings::new(device);
+        let [frame, light] = bindings.layouts();
+        // Normal, base colour, emission, view tint.
+        let surface_layout = create_layout(device, 4);
+        // Visibility.
+        let light_layout = create_layout(device, 1);
+        let layout = |groups: &[&BindGroupLayout]| Layouts::pipeline(device, groups);
+        let base = ShadePipeline {
+            module: &shaders::module(device, shaders::SHADE_BASE),
+            entry_point: "shade_base_fragment",
+            layout: &layout(&[frame, &surface_layout]),
+            constants: &[],
+            format,
+            blend: None,
+        }
+        .create(device);
+        let light = LightPipelines {
+            linked: shaders::link(shaders::SHADE_LIGHT),
+            module: shaders::module(device, shaders::SHADE_LIGHT),
+            layout: layout(&[frame, &surface_layout, light, &light_layout]),
+            format,
+            made: Mutex::default(),
         };
         Ok(Self {
-            base: pipeline(
-                &shaders::SHADE_BASE,
-                "shade_base_fragment",
-                &[&view_layout],
-                None,
-            ),
-            light: pipeline(
-                &shaders::SHADE_LIGHT,
-                "shade_light_fragment",
-                &[&view_layout, &light_layout],
-                Some(ADD),
-            ),
-            view_layout,
+            base,
+            light,
+            surface_layout,
             light_layout,
-            // Border colours are optional: the shader itself is black outside the texture.
-            picture_sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("light texture"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                ..Default::default()
-            }),
-            absent: Absent::new(device),
+            bindings,
         })
     }
 
     pub(super) fn record(
         &self,
-        device: &Device,
+        (device, queue): (&Device, &Queue),
         encoder: &mut CommandEncoder,
         target: &TextureView,
         g_buffer: &GBufferTargets,
         (frame, lights): (&Frame, SurfaceLights<'_>),
         timer: Option<&mut PassTimer>,
     ) {
-        let rays = CameraRays::new(&frame.camera, g_buffer.size());
-        let view = self.view_group(device, &ShadeViewUniform::new(frame, &rays), g_buffer);
+        let (size, depth) = (g_buffer.size(), Some(&g_buffer.depth.view));
+        let bindings = &self.bindings;
+        let frame_group = bindings.frame_group(device, queue, frame, size, depth);
+        let surface_group = self.surface_group(device, frame, g_buffer);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("surfaces"),
             color_attachments: &[cleared(target, wgpu::Color::TRANSPARENT)],
             timestamp_writes: timer.and_then(|t| t.render_pass("surfaces")),
             ..Default::default()
         });
-        pass.set_bind_group(0, &view, &[]);
         pass.set_pipeline(&self.base);
+        pass.set_bind_group(0, &frame_group, &[]);
+        pass.set_bind_group(1, &surface_group, &[]);
         pass.draw(0..3, 0..1);
-        pass.set_pipeline(&self.light);
         for (i, (light, inputs)) in frame.lights.iter().zip(lights.inputs).enumerate() {
+            let constants = Bindings::light_constants(&self.light.linked, light, inputs);
+            let light_group = bindings.light_group(device, frame, i, inputs);
             let visibility = lights.visibility.get(i).copied().flatten();
-            let light = (light, inputs, visibility);
-            pass.set_bind_group(1, &self.light_group(device, light, &rays), &[]);
+            let own_group = self.light_group(device, light, visibility, g_buffer);
+            pass.set_pipeline(&self.light.get(device, constants));
+            pass.set_bind_group(2, &light_group, &[]);
+            pass.set_bind_group(3, &own_group, &[]);
             pass.draw(0..3, 0..1);
         }
     }
 
-    fn view_group(
+    /// Group 1: the G-buffer but for its depth.
+    fn surface_group(
         &self,
         device: &Device,
-        uniform: &ShadeViewUniform,
+        frame: &Frame,
         g_buffer: &GBufferTargets,
     ) -> BindGroup {
         create_bind_group(
             device,
-            &self.view_layout,
-            bytemuck::bytes_of(uniform),
+            &self.surface_layout,
+            bytemuck::bytes_of(&ShadeUniform::new(frame)),
             &[
-                &g_buffer.depth,
-                &g_buffer.normal,
-                &g_buffer.base_color,
-                &g_buffer.emissive,
-                &g_buffer.view_tint,
-            ]
-            .map(|target| BindingResource::TextureView(&target.view)),
+                &g_buffer.normal.view,
+                &g_buffer.base_color.view,
+                &g_buffer.emissive.view,
+                &g_buffer.view_tint.view,
+            ],
         )
     }
 
+    /// Group 3: a rectangle's edges, and the visibility.
     fn light_group(
         &self,
         device: &Device,
-        (light, inputs, visibility): (&Light, &LightInputs<'_>, Option<&TextureView>),
-        rays: &CameraRays,
+        light: &Light,
+        visibility: Option<&TextureView>,
+        g_buffer: &GBufferTargets,
     ) -> BindGroup {
-        let mut uniform = ShadeLightUniform::new(light, inputs, rays.eye);
-        uniform.visibility = visibility.is_some().into();
-        let absent = &self.absent;
+        let uniform = ShadeLightUniform::new(light, visibility.is_some());
+        // Something must be bound where there is no visibility, and is not read.
+        let seen = visibility.unwrap_or(&g_buffer.view_tint.view);
         create_bind_group(
             device,
             &self.light_layout,
             bytemuck::bytes_of(&uniform),
-            &[
-                BindingResource::TextureView(inputs.shadow_map.unwrap_or(&absent.shadow_map)),
-                BindingResource::TextureView(inputs.glass.unwrap_or(&absent.glass)),
-                BindingResource::TextureView(inputs.texture.unwrap_or(&absent.picture)),
-                BindingResource::Sampler(&self.picture_sampler),
-                BindingResource::TextureView(visibility.unwrap_or(&absent.picture)),
-            ],
+            &[seen],
         )
     }
 }
 
-/// A uniform buffer of its own at binding 0, then the resources.
+/// A uniform buffer of its own at binding 0, then the textures.
 fn create_bind_group(
     device: &Device,
     layout: &BindGroupLayout,
     uniform: &[u8],
-    resources: &[BindingResource<'_>],
+    textures: &[&TextureView],
 ) -> BindGroup {
     let buffer = device.create_buffer_init(&BufferInitDescriptor {
         label: Some("surfaces"),
         contents: uniform,
         usage: wgpu::BufferUsages::UNIFORM,
     });
-    let resources = std::iter::once(buffer.as_entire_binding()).chain(resources.iter().cloned());
+    let textures = textures
+        .iter()
+        .map(|view| wgpu::BindingResource::TextureView(view));
+    let resources = std::iter::once(buffer.as_entire_binding()).chain(textures);
     let entries: Vec<BindGroupEntry<'_>> = (0..)
         .zip(resources)
         .map(|(binding, resource)| BindGroupEntry { binding, resource })
@@ -193,100 +234,66 @@ fn create_bind_group(
     })
 }
 
-fn view_layout(device: &Device) -> BindGroupLayout {
-    let float = TextureSampleType::Float { filterable: false };
-    let dimension = TextureViewDimension::D2;
-    create_layout(
-        device,
-        &[
-            texture(TextureSampleType::Depth, dimension),
-            texture(float, dimension),
-            texture(float, dimension),
-            texture(float, dimension),
-            texture(float, dimension),
-        ],
-    )
-}
-
-fn light_layout(device: &Device) -> BindGroupLayout {
-    create_layout(
-        device,
-        &[
-            texture(TextureSampleType::Depth, TextureViewDimension::D2Array),
-            texture(TextureSampleType::Uint, TextureViewDimension::D2Array),
-            texture(
-                TextureSampleType::Float { filterable: true },
-                TextureViewDimension::D2,
-            ),
-            BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            texture(
-                TextureSampleType::Float { filterable: false },
-                TextureViewDimension::D2,
-            ),
-        ],
-    )
-}
-
-fn texture(sample_type: TextureSampleType, view_dimension: TextureViewDimension) -> BindingType {
-    BindingType::Texture {
-        sample_type,
-        view_dimension,
-        multisampled: false,
-    }
-}
-
-/// A uniform buffer at binding 0, then these.
-fn create_layout(device: &Device, bindings: &[BindingType]) -> BindGroupLayout {
+/// A uniform buffer at binding 0, then so many textures of floats.
+fn create_layout(device: &Device, textures: u32) -> BindGroupLayout {
     let visibility = wgpu::ShaderStages::FRAGMENT;
     let mut entries = vec![uniform_entry(visibility)];
-    entries.extend(
-        (1..)
-            .zip(bindings)
-            .map(|(binding, &ty)| BindGroupLayoutEntry {
-                binding,
-                visibility,
-                ty,
-                count: None,
-            }),
-    );
+    entries.extend((1..=textures).map(|binding| BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: BindingType::Texture {
+            sample_type: TextureSampleType::Float { filterable: false },
+            view_dimension: TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("surfaces"),
         entries: &entries,
     })
 }
 
-fn create_pipeline(
-    device: &Device,
-    shader: &Shader,
-    entry_point: &str,
-    groups: &[&BindGroupLayout],
+/// A triangle over the whole image.
+struct ShadePipeline<'a> {
+    module: &'a ShaderModule,
+    entry_point: &'a str,
+    layout: &'a PipelineLayout,
+    constants: &'a [(&'static str, f64)],
     format: TextureFormat,
     blend: Option<BlendState>,
-) -> RenderPipeline {
-    let module = shader.module(device);
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(shader.name),
-        layout: Some(&Layouts::pipeline(device, groups)),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("shade_vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(ColorTargetState {
-                format,
-                blend,
-                write_mask: ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+}
+
+impl ShadePipeline<'_> {
+    fn create(&self, device: &Device) -> RenderPipeline {
+        let compilation_options = PipelineCompilationOptions {
+            constants: self.constants,
+            ..Default::default()
+        };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.entry_point),
+            layout: Some(self.layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some("frame_full_screen"),
+                compilation_options: compilation_options.clone(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(self.entry_point),
+                compilation_options,
+                targets: &[Some(ColorTargetState {
+                    format: self.format,
+                    blend: self.blend,
+                    write_mask: ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
 }

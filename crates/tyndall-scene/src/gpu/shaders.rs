@@ -1,61 +1,58 @@
-//! The WGSL: one topic a file, joined by these lists.
+//! The WESL modules of the scene, linked with each other and with tyndall's shader package.
 
+use tyndall::shader::{Linked, Linker};
 use wgpu::{Device, ShaderModule, ShaderSource};
 
-const VIEW: &str = include_str!("wgsl/view.wgsl");
-const MESH: &str = include_str!("wgsl/mesh.wgsl");
-const MATERIAL: &str = include_str!("wgsl/material.wgsl");
-
-/// A shader: its name and the files it is joined of.
-pub(super) struct Shader {
-    pub(super) name: &'static str,
-    pub(super) files: &'static [&'static str],
+macro_rules! modules {
+    ($($name:literal),+ $(,)?) => {
+        &[$((concat!("scene::gpu::", $name), include_str!(concat!($name, ".wesl")))),+]
+    };
 }
 
-pub(super) const G_BUFFER: Shader = Shader {
-    name: "g-buffer",
-    files: &[VIEW, MESH, MATERIAL, include_str!("wgsl/g_buffer.wgsl")],
-};
-pub(super) const VIEW_TINT: Shader = Shader {
-    name: "view tint",
-    files: &[VIEW, MESH, MATERIAL, include_str!("wgsl/view_tint.wgsl")],
-};
-pub(super) const SHADOW_MAP: Shader = Shader {
-    name: "shadow map",
-    files: &[VIEW, MESH, MATERIAL, include_str!("wgsl/shadow_map.wgsl")],
-};
-pub(super) const GLASS: Shader = Shader {
-    name: "glass",
-    files: &[VIEW, MESH, MATERIAL, include_str!("wgsl/glass.wgsl")],
-};
+/// Modules by path.
+const MODULES: &[(&str, &str)] = modules![
+    "g_buffer",
+    "glass",
+    "material",
+    "mesh",
+    "shade",
+    "shade_base",
+    "shade_light",
+    "shade_shadow",
+    "shade_surface",
+    "shadow_map",
+    "view",
+    "view_tint",
+];
 
-const SHADE_VIEW: &str = include_str!("wgsl/shade_view.wgsl");
+pub(super) const G_BUFFER: &str = "scene::gpu::g_buffer";
+pub(super) const VIEW_TINT: &str = "scene::gpu::view_tint";
+pub(super) const SHADOW_MAP: &str = "scene::gpu::shadow_map";
+pub(super) const GLASS: &str = "scene::gpu::glass";
+/// Surfaces: sky and emission.
+pub(super) const SHADE_BASE: &str = "scene::gpu::shade_base";
+/// Surfaces: a light.
+pub(super) const SHADE_LIGHT: &str = "scene::gpu::shade";
 
-pub(super) const SHADE_BASE: Shader = Shader {
-    name: "surfaces: sky and emission",
-    files: &[SHADE_VIEW, include_str!("wgsl/shade_base.wgsl")],
-};
-pub(super) const SHADE_LIGHT: Shader = Shader {
-    name: "surfaces: a light",
-    files: &[
-        SHADE_VIEW,
-        include_str!("wgsl/shade_light.wgsl"),
-        include_str!("wgsl/shade_shadow.wgsl"),
-        include_str!("wgsl/shade.wgsl"),
-    ],
-};
+/// A module with all that it imports, as plain WGSL.
+///
+/// # Panics
+/// Where it cannot be linked: a test links all of them.
+pub(super) fn link(path: &str) -> Linked {
+    // Group 1 is the surfaces': without a light, they are drawn as well.
+    let package = Linker::new().group(1, 2);
+    let linker = MODULES
+        .iter()
+        .fold(package, |linker, (path, text)| linker.module(*path, *text));
+    linker.link(path).expect("modules that link")
+}
 
-impl Shader {
-    pub(super) fn source(&self) -> String {
-        self.files.join("\n")
-    }
-
-    pub(super) fn module(&self, device: &Device) -> ShaderModule {
-        device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(self.name),
-            source: ShaderSource::Wgsl(self.source().into()),
-        })
-    }
+/// Creates the shader of a module and all that it imports.
+pub(super) fn module(device: &Device, path: &str) -> ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(path),
+        source: ShaderSource::Wgsl(link(path).wgsl.into()),
+    })
 }
 
 #[cfg(test)]
@@ -65,31 +62,24 @@ mod tests {
     use super::*;
     use crate::gpu::{
         material::MaterialUniform,
-        uniforms::{ShadeLightUniform, ShadeViewUniform},
+        uniforms::{ShadeLightUniform, ShadeUniform},
         view::ViewUniform,
     };
 
-    fn parse(shader: &Shader) -> shader::Shader {
-        shader::Shader::new(shader.files).unwrap_or_else(|error| panic!("{}: {error}", shader.name))
+    fn parse(path: &str) -> shader::Shader {
+        shader::Shader::new(&[&link(path).wgsl]).unwrap_or_else(|error| panic!("{path}: {error}"))
     }
 
     #[test]
-    fn all_shaders_are_valid() {
-        for shader in [
-            G_BUFFER,
-            VIEW_TINT,
-            SHADOW_MAP,
-            GLASS,
-            SHADE_BASE,
-            SHADE_LIGHT,
-        ] {
-            parse(&shader);
+    fn every_module_is_valid_by_itself() {
+        for (path, _) in MODULES {
+            parse(path);
         }
     }
 
     #[test]
     fn uniforms_lie_as_the_shaders_read_them() {
-        let (mesh, light) = (parse(&G_BUFFER), parse(&SHADE_LIGHT));
+        let (mesh, light) = (parse(G_BUFFER), parse(SHADE_LIGHT));
         for (shader, name, expected) in [
             (
                 &mesh,
@@ -113,45 +103,23 @@ mod tests {
             ),
             (
                 &light,
-                "ShadeView",
-                rust_layout!(ShadeViewUniform {
-                    right,
-                    near,
-                    up,
-                    far,
-                    forward,
-                    depth_range,
-                    center,
-                    orthographic,
-                    sigma_t,
-                    ambient,
+                "Shade",
+                rust_layout!(ShadeUniform {
                     sun,
-                    normal_offset,
+                    ambient,
                     sky_horizon,
-                    light_radius,
+                    ambient_tilt,
                     sky_zenith,
-                    ambient_tilt
+                    normal_offset
                 }),
             ),
             (
                 &light,
                 "ShadeLight",
                 rust_layout!(ShadeLightUniform {
-                    color,
-                    kind,
-                    position,
-                    cos_inner,
-                    direction,
-                    cos_outer,
                     edge_x,
                     samples,
                     edge_y,
-                    picture,
-                    picture_rows,
-                    clip_from_world,
-                    faces,
-                    standard_depth,
-                    glass_layers,
                     visibility
                 }),
             ),

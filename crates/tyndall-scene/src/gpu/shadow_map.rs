@@ -24,7 +24,7 @@ pub(super) struct ShadowMapPipelines {
 
 impl ShadowMapPipelines {
     pub(super) fn new(device: &Device, layouts: &Layouts) -> Self {
-        let module = shaders::SHADOW_MAP.module(device);
+        let module = shaders::module(device, shaders::SHADOW_MAP);
         let opaque = Layouts::pipeline(device, &[&layouts.view]);
         let masked = Layouts::pipeline(device, &[&layouts.view, &layouts.material]);
         let pipeline = |label, layout, fragment| {

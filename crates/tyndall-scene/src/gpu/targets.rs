@@ -233,36 +233,6 @@ impl GlassMapTarget {
     }
 }
 
-/// Textures to bind for those that a light does not have; nothing reads them.
-pub(super) struct Absent {
-    pub(super) shadow_map: TextureView,
-    pub(super) glass: TextureView,
-    pub(super) picture: TextureView,
-}
-
-impl Absent {
-    pub(super) fn new(device: &Device) -> Self {
-        let texture = |format| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("absent"),
-                size: wgpu::Extent3d::default(),
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            })
-        };
-        Self {
-            shadow_map: array_view(&texture(DEPTH_FORMAT)),
-            glass: array_view(&texture(GLASS_FORMAT)),
-            picture: texture(TextureFormat::Rgba8Unorm)
-                .create_view(&wgpu::TextureViewDescriptor::default()),
-        }
-    }
-}
-
 /// Depth's bits and the tint's square roots in 10 bits each, as the CPU has them: linear tint, then depth.
 fn unpack_glass([depth, tint]: [u32; 2]) -> [f32; 4] {
     let [r, g, b] = [0, 10, 20].map(|shift| ((tint >> shift & 1023) as f32 / 1023.0).powi(2));

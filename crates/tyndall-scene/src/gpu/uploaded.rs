@@ -13,6 +13,7 @@ use crate::scene::Scene;
 
 pub(super) struct UploadedScene {
     pub(super) device: Device,
+    pub(super) queue: Queue,
     pub(super) layouts: Layouts,
     pub(super) meshes: Meshes,
     materials: Materials,
@@ -27,6 +28,7 @@ impl UploadedScene {
         let layouts = Layouts::new(device);
         Ok(Self {
             device: device.clone(),
+            queue: queue.clone(),
             meshes: Meshes::new(device, scene)?,
             materials: Materials::new(device, queue, scene, &layouts.material)?,
             layouts,

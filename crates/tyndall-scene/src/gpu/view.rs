@@ -11,7 +11,7 @@ use tyndall::{
     shadow::faces,
 };
 
-/// `View` of `view.wgsl`.
+/// `View` of `view.wesl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct ViewUniform {
