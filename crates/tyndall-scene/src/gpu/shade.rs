@@ -24,6 +24,7 @@ use super::{
     targets::GBufferTargets,
     uniforms::{ShadeLightUniform, ShadeUniform},
 };
+use crate::shading::RECT_SAMPLES;
 
 /// Adds to the target's colour.
 const ADD: BlendState = {
@@ -156,9 +157,12 @@ impl ShadePipelines {
         pass.set_bind_group(1, &surface_group, &[]);
         pass.draw(0..3, 0..1);
         for (i, (light, inputs)) in frame.lights.iter().zip(lights.inputs).enumerate() {
-            let constants = Bindings::light_constants(&self.light.linked, light, inputs);
-            let light_group = bindings.light_group(device, frame, i, inputs);
             let visibility = lights.visibility.get(i).copied().flatten();
+            let mut constants = Bindings::light_constants(&self.light.linked, light, inputs);
+            // As uniforms they would have lavapipe 22.3 crash.
+            constants.push(("SHADE_RECT_SAMPLES", RECT_SAMPLES.into()));
+            constants.push(("SHADE_IS_SEEN", visibility.is_some().into()));
+            let light_group = bindings.light_group(device, frame, i, inputs);
             let own_group = self.light_group(device, light, visibility, g_buffer);
             pass.set_pipeline(&self.light.get(device, constants));
             pass.set_bind_group(2, &light_group, &[]);
@@ -195,7 +199,7 @@ impl ShadePipelines {
         visibility: Option<&TextureView>,
         g_buffer: &GBufferTargets,
     ) -> BindGroup {
-        let uniform = ShadeLightUniform::new(light, visibility.is_some());
+        let uniform = ShadeLightUniform::new(light);
         // Something must be bound where there is no visibility, and is not read.
         let seen = visibility.unwrap_or(&g_buffer.view_tint.view);
         create_bind_group(

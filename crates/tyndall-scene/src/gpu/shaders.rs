@@ -116,12 +116,7 @@ mod tests {
             (
                 &light,
                 "ShadeLight",
-                rust_layout!(ShadeLightUniform {
-                    edge_x,
-                    samples,
-                    edge_y,
-                    visibility
-                }),
+                rust_layout!(ShadeLightUniform { edge_x, edge_y }),
             ),
         ] {
             assert_eq!(shader.struct_layout(name), Ok(expected), "{name}");

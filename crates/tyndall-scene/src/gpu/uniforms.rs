@@ -5,8 +5,7 @@ use glam::DVec3;
 use tyndall::frame::{Emitter, Frame, Light};
 
 use crate::shading::{
-    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_TEXELS, RECT_SAMPLES, SKY_HORIZON, SKY_ZENITH,
-    sun_illuminance,
+    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_TEXELS, SKY_HORIZON, SKY_ZENITH, sun_illuminance,
 };
 
 /// `Shade`.
@@ -40,22 +39,22 @@ impl ShadeUniform {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct ShadeLightUniform {
     pub(super) edge_x: [f32; 3],
-    pub(super) samples: u32,
+    _pad_x: f32,
     pub(super) edge_y: [f32; 3],
-    pub(super) visibility: u32,
+    _pad_y: f32,
 }
 
 impl ShadeLightUniform {
-    pub(super) fn new(light: &Light, has_visibility: bool) -> Self {
+    pub(super) fn new(light: &Light) -> Self {
         let (edge_x, edge_y) = match light.emitter {
             Emitter::Rect { edge_x, edge_y, .. } => (edge_x, edge_y),
             _ => ([0.0; 3], [0.0; 3]),
         };
         Self {
             edge_x,
-            samples: RECT_SAMPLES,
+            _pad_x: 0.0,
             edge_y,
-            visibility: has_visibility.into(),
+            _pad_y: 0.0,
         }
     }
 }
