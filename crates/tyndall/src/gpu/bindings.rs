@@ -142,12 +142,12 @@ impl Bindings {
         let light = with_inputs(&frame.lights[index], inputs);
         // The eye does not depend on the picture's size.
         let eye = CameraRays::new(&frame.camera, [1; 2]).eye;
-        let (light, _) = LightUniform::new(&light, eye, inputs.glass.is_some());
+        let (light, _) = LightUniform::new(&light, eye, inputs.glass_layers(&light));
         self.light_group_of(device, &uniform(device, &light), inputs)
     }
 
-    /// Pipeline constants of a kind of light: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND` and `SHADOW_GLASS`, without those
-    /// that the linked shader does not declare, for wgpu refuses them. Lights of equal constants share pipelines.
+    /// Pipeline constants of a kind of light: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND` and `SHADOW_GLASS_LAYERS`, without
+    /// those that the linked shader does not declare, for wgpu refuses them. Lights of equal constants share pipelines.
     /// `MEDIUM_PHASES` is not among them: such pipelines do any medium.
     pub fn light_constants(
         shader: &Linked,
@@ -155,9 +155,9 @@ impl Bindings {
         inputs: &LightInputs<'_>,
     ) -> Vec<(&'static str, f64)> {
         let light = with_inputs(light, inputs);
-        let has_glass = inputs.glass.is_some() && light.shadow.is_some();
         // The kind does not depend on the eye.
-        let (_, variant) = LightUniform::new(&light, glam::DVec3::ZERO, has_glass);
+        let (_, variant) =
+            LightUniform::new(&light, glam::DVec3::ZERO, inputs.glass_layers(&light));
         let mut constants = variant.constants().to_vec();
         constants.retain(|(name, _)| *name != "MEDIUM_PHASES" && shader.declares(name));
         constants
@@ -290,7 +290,7 @@ mod tests {
         let of_light = [("LIGHT_KIND", 1.0), ("LIGHT_TEXTURE", 0.0)];
         assert_eq!(constants("tyndall::light::light"), of_light);
         // Without a map in its inputs, the light is unshadowed.
-        let of_shadow = [("SHADOW_KIND", 0.0), ("SHADOW_GLASS", 0.0)];
+        let of_shadow = [("SHADOW_KIND", 0.0), ("SHADOW_GLASS_LAYERS", 0.0)];
         assert_eq!(constants("tyndall::shadow::shadow")[2..], of_shadow);
     }
 }

@@ -30,13 +30,14 @@ block! {
 }
 
 /// The kind of light and the phase functions that a pipeline is made for: the overrides `LIGHT_KIND`, `LIGHT_TEXTURE`,
-/// `SHADOW_KIND`, `SHADOW_GLASS`, `MEDIUM_PHASES`.
+/// `SHADOW_KIND`, `SHADOW_GLASS_LAYERS`, `MEDIUM_PHASES`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct LightVariant {
     pub(crate) kind: u32,
     pub(crate) texture: u32,
     pub(crate) shadow: u32,
-    pub(crate) glass: bool,
+    /// Layers of coloured glass a face; 0: there is none.
+    pub(crate) glass_layers: u32,
     /// Bit n is set where the medium has phase function n.
     pub(crate) phases: u32,
 }
@@ -57,7 +58,7 @@ impl LightVariant {
             ("LIGHT_KIND", self.kind.into()),
             ("LIGHT_TEXTURE", self.texture.into()),
             ("SHADOW_KIND", self.shadow.into()),
-            ("SHADOW_GLASS", f64::from(u8::from(self.glass))),
+            ("SHADOW_GLASS_LAYERS", self.glass_layers.into()),
             ("MEDIUM_PHASES", self.phases.into()),
         ]
     }
@@ -65,13 +66,13 @@ impl LightVariant {
 
 impl LightUniform {
     /// A light as the shaders see it, and the variant of pipeline it needs.
-    pub(crate) fn new(light: &frame::Light, eye: DVec3, has_glass: bool) -> (Self, LightVariant) {
+    pub(crate) fn new(light: &frame::Light, eye: DVec3, glass_layers: u32) -> (Self, LightVariant) {
         let mut uniform = Self::default();
         let mut variant = LightVariant {
             kind: constant(kind_name(&light.emitter)),
             texture: constant("LIGHT_TEXTURE_NONE"),
             shadow: constant("SHADOW_NONE"),
-            glass: has_glass,
+            glass_layers,
             phases: 0,
         };
         uniform.set_emitter(&light.emitter, eye);

@@ -310,7 +310,7 @@ import tyndall::light::stretch::stretch_plain;
                         usage: wgpu::BufferUsages::UNIFORM,
                     })
             };
-            let (light_uniform, variant) = LightUniform::new(&light, DVec3::ZERO, false);
+            let (light_uniform, variant) = LightUniform::new(&light, DVec3::ZERO, 0);
             let frame_buffer = uniform(bytemuck::bytes_of(&FrameUniform::new(
                 &frame,
                 &rays,
