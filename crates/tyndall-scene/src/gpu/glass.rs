@@ -107,7 +107,10 @@ impl GlassPipelines {
                 pass.set_pipeline(pipeline.get(reversed));
                 pass.set_bind_group(0, &view, &[]);
                 pass.set_bind_group(2, &group, &[]);
-                scene.draw(&mut pass, DrawClass::Translucent);
+                // Light passes a triangle once.
+                if index < scene.meshes.triangles(DrawClass::Translucent) {
+                    scene.draw(&mut pass, DrawClass::Translucent);
+                }
             }
         }
     }
