@@ -811,3 +811,96 @@ fn info_names_the_technique_of_each_light_of_a_shot() {
         assert!(text.contains(words), "{words} is not in: {text}");
     }
 }
+
+/// A wall, a lamp and a camera as a glTF file, all under one node that stands at `at` \[m].
+fn wall_at(folder: &Path, at: [f64; 3]) {
+    let wall: [[f32; 3]; 6] = [[0, 0], [1, 0], [1, 1], [1, 1], [0, 1], [0, 0]]
+        .map(|[x, y]: [u8; 2]| [f32::from(x) - 0.5, 2.0 * f32::from(y), 0.0]);
+    let bytes: Vec<u8> = wall
+        .iter()
+        .flatten()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    std::fs::write(folder.join("wall.bin"), &bytes).unwrap();
+    let document = serde_json::json!({
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 50}]}},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [
+            {"translation": at, "children": [1, 2, 3]},
+            {"mesh": 0},
+            {"translation": [0.4, 2.5, -1.5], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+            {"translation": [0.3, 1.2, 4.0], "camera": 0},
+        ],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.05, "zfar": 20}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{
+            "bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3",
+            "min": [-0.5, 0, 0], "max": [0.5, 2, 0],
+        }],
+        "bufferViews": [{"buffer": 0, "byteLength": bytes.len()}],
+        "buffers": [{"uri": "wall.bin", "byteLength": bytes.len()}],
+    });
+    std::fs::write(folder.join("wall.gltf"), document.to_string()).unwrap();
+}
+
+/// A shot of the wall where it is; with a camera and lights of its own, or with the file's.
+fn wall_shot(at: [f64; 3], own: bool) -> String {
+    let point = |x: f64, y: f64, z: f64| format!("{:?}", [at[0] + x, at[1] + y, at[2] + z]);
+    let own = own.then(|| {
+        format!(
+            "[camera]\neye = {}\ntarget = {}\nyfov_deg = 55\nnear = 0.05\nfar = 20\n\
+             [[light]]\ntype = \"spot\"\nposition = {}\ndirection = [0.2, -0.9, 0.6]\n\
+             intensity = [60, 50, 40]\ninner = 0.2\nouter = 0.6\n\
+             [[light]]\ntype = \"directional\"\ndirection = [0.3, -1, 0.8]\nilluminance = [1, 2, 3]\n",
+            point(1.5, 1.2, 3.0),
+            point(0.0, 0.8, 0.0),
+            point(-0.2, 3.0, -1.6),
+        )
+    });
+    let own = own.unwrap_or_default();
+    let (_, medium) = SHOT.split_once("[medium]").unwrap();
+    format!("scene = \"wall.gltf\"\nsize = [32, 24]\n{own}[medium]{medium}")
+}
+
+#[test]
+fn scenes_far_from_the_origin_look_as_they_do_at_it() {
+    let places = [
+        [500_000.3, 12.7, 5_200_000.6],
+        [-6_378_137.2, 0.1, 3.4],
+        [1e7 + 0.3, -1e7, 1e7 + 0.9],
+    ];
+    let gpu = device::device_or_skip("scenes far from the origin on the GPU");
+    let backends = ["cpu"].into_iter().chain(gpu.map(|_| "gpu"));
+    for backend in backends {
+        let folder = tempfile::tempdir().unwrap();
+        let render = |at, own| {
+            wall_at(folder.path(), at);
+            let lights = if own {
+                &["light.0", "light.1"][..]
+            } else {
+                &["light.0"]
+            };
+            let sets = lights
+                .iter()
+                .flat_map(|light| ["--set".into(), format!("{light}.shadow_map=256")]);
+            let sets: Vec<String> = sets.collect();
+            let more: Vec<&str> = sets.iter().map(String::as_str).collect();
+            let shot = wall_shot(at, own);
+            in_scatter_of(
+                folder.path(),
+                &shot,
+                &[&["--backend", backend], &more[..]].concat(),
+            )
+        };
+        for own in [true, false] {
+            let here = render([0.0; 3], own);
+            for at in places {
+                let error = compare(&render(at, own), &here).unwrap().rel_mae;
+                eprintln!("{backend}, at {at:?}, own {own}: {error:.1e}");
+                assert!(error < 1e-4, "{backend}, at {at:?}: {error}");
+            }
+        }
+    }
+}

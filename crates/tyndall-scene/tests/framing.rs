@@ -19,7 +19,7 @@ fn node(parent_from_local: Affine3A) -> Node {
     Node {
         name: "node".to_owned(),
         parent: None,
-        parent_from_local,
+        parent_from_local: parent_from_local.as_daffine3(),
         mesh: None,
         camera: None,
         light: None,

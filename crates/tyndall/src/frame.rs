@@ -1,6 +1,10 @@
 //! A frame as plain data: the same [`Frame`] drives the GPU and the CPU.
 //!
 //! World space is right-handed; lengths are metres, angles radians, colours linear RGB.
+//!
+//! Its origin is the caller's to choose, and single precision holds what is near it: in a large world, subtract a point near the
+//! eye from all positions (and put it into the matrices of shadow maps) in double precision, before they become a frame. Keep
+//! the point while it is near, for what temporal reuse keeps is relative to it: turn reuse off for the frame that moves it.
 
 pub use crate::phase::Phase;
 use crate::phase::droplets::droplets;
@@ -19,7 +23,8 @@ pub struct Frame {
 /// A camera: eye, orientation, projection and the convention of its depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// World-space position of the eye (orthographic: of the plane that depth is measured from) \[m].
+    /// World-space position of the eye (orthographic: of the plane that depth is measured from) \[m]; within 8192 far planes of
+    /// the origin, see the module's head.
     pub eye: [f32; 3],
     /// World-space viewing direction; need not be of unit length, must not be zero.
     pub forward: [f32; 3],

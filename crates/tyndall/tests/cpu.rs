@@ -360,3 +360,35 @@ fn incremental_agrees_with_min_max() {
         assert!(error < 0.012, "{}: {error}", stage.name);
     }
 }
+
+#[test]
+fn an_eye_that_single_precision_cannot_hold_is_refused() {
+    let (mut frame, by) = simple(
+        MediumComponent {
+            sigma_s: [0.1; 3],
+            sigma_a: [0.0; 3],
+            phase: Phase::Isotropic,
+        },
+        Emitter::Point {
+            position: [0.0; 3],
+            intensity: [1.0; 3],
+        },
+        reference(),
+    );
+    let depth = common::depth(true);
+    let inputs = CpuInputs {
+        size: SIZE,
+        depth: &depth,
+        lights: &[Default::default()],
+        occluders: None,
+    };
+    // The far plane is 30 m away.
+    for (x, holds) in [(2.4e5, true), (-2.5e5, false)] {
+        frame.camera.eye[0] = x;
+        let refused = cpu::render(&frame, &inputs, &by, &|_, _| {}).err();
+        assert_eq!(refused.is_none(), holds, "{refused:?}");
+        let said = refused.map(|error| error.to_string());
+        let names = |text: String| text.contains("camera.eye") && text.contains("relative to");
+        assert!(said.is_none_or(names));
+    }
+}

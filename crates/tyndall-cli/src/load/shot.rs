@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use tyndall::{
     cpu::LightTexture,
     frame::{Camera, Emitter, Frame, Light, Medium},
@@ -19,6 +19,7 @@ use tyndall_scene::{
 use super::{
     frame::{LazyTracer, LightExtras, ShotFrame, built},
     motion::Motion,
+    origin::place_origin,
     scene::{at_scene, load_scene},
     textures::ShotTextures,
 };
@@ -54,16 +55,17 @@ impl LoadedShot {
     /// # Errors
     /// [`Failure::Input`] where the scene or a texture can't be loaded, or the shot doesn't fit the scene.
     pub fn at_rest(shot: &Shot, progress: &mut Progress) -> Result<Self, Failure> {
-        let scene = progress
+        let mut scene = progress
             .run(&format!("load {}", shot.scene), |_| load_scene(&shot.scene))
             .map_err(|failure| at_scene(shot, failure))?;
+        place_origin(shot, &mut scene);
         let tracer = progress.run("build BVH", |_| built(Tracer::new(&scene)));
         let framing = needs_framing(shot).then(|| {
             progress.run("frame", |_| {
                 framing::frame_scene(&scene, &tracer, aspect(shot))
             })
         });
-        let lights = lights(shot, framing.as_ref()).map_err(Failure::input)?;
+        let lights = lights(shot, framing.as_ref(), scene.origin).map_err(Failure::input)?;
         Ok(Self {
             shot: shot.clone(),
             scene: Arc::new(scene),
@@ -177,11 +179,12 @@ impl LoadedShot {
         let cameras = SceneCameras {
             named: &cameras,
             framed: framing.as_ref().map(|framing| framing.camera),
+            origin: scene.origin,
             farthest: &|eye| bounds.map_or(0.0, |bounds| farthest(&bounds, eye.into())),
         };
         Ok(Parts {
             camera: shot.camera.resolve(&cameras, aspect)?,
-            lights: lights(shot, framing.as_ref())?,
+            lights: lights(shot, framing.as_ref(), scene.origin)?,
             medium: medium(shot, framing.as_ref())?,
         })
     }
@@ -223,12 +226,19 @@ fn needs_framing(shot: &Shot) -> bool {
     shot.camera.base == CameraBase::Scene || shot.lights.is_none() || shot.medium.is_none()
 }
 
-fn lights(shot: &Shot, framing: Option<&Framing>) -> Result<Vec<LightSpec>, ShotError> {
-    match (&shot.lights, framing) {
-        (Some(lights), _) => Ok(lights.clone()),
-        (None, Some(framing)) => shot.scene_lights(&framing.lights),
-        (None, None) => Ok(Vec::new()),
-    }
+/// The lights, relative to `origin`.
+fn lights(
+    shot: &Shot,
+    framing: Option<&Framing>,
+    origin: DVec3,
+) -> Result<Vec<LightSpec>, ShotError> {
+    let lights = match (&shot.lights, framing) {
+        (Some(lights), _) => lights.clone(),
+        (None, Some(framing)) => shot.scene_lights(&framing.lights, origin)?,
+        (None, None) => Vec::new(),
+    };
+    let lights = lights.into_iter();
+    Ok(lights.map(|light| light.relative_to(origin)).collect())
 }
 
 fn medium(shot: &Shot, framing: Option<&Framing>) -> Result<Medium, ShotError> {

@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use glam::DVec3;
 use tyndall::{
     frame::{Camera, Emitter, Medium, MediumComponent, Phase, Projection, TexturePlacement},
     techniques::{Technique, Value},
@@ -78,7 +79,7 @@ fn a_whole_shot_is_read() {
     assert!(matches!(&shot.scene, SceneSource::File(path) if path.ends_with("a.glb")));
     assert_eq!(shot.name(), "shot");
     assert_eq!(shot.camera.base, CameraBase::Shot);
-    assert_eq!(shot.camera.eye, Some([0.0, 1.7, 9.0]));
+    assert_eq!(shot.camera.eye, Some(DVec3::new(0.0, 1.7, 9.0)));
     assert_eq!(shot.camera.up, None);
     let lights = shot.lights.unwrap();
     assert_eq!(lights[0].shadow_map, 2048);
@@ -694,7 +695,7 @@ fn lights_of_the_scene_may_have_their_own_technique() {
         position: [1.0; 3],
         intensity: [5.0; 3],
     };
-    let lights = shot.scene_lights(&[lamp, lamp]).unwrap();
+    let lights = shot.scene_lights(&[lamp, lamp], DVec3::ZERO).unwrap();
     assert_eq!(lights[0].technique, None);
     assert_eq!(lights[1].technique, Technique::from_name("vsv"));
     let table = scene_shot(&["light.0.technique={name='hybrid'}"]);
@@ -731,13 +732,16 @@ fn overrides_change_what_the_scene_gives() {
         position: [1.0; 3],
         intensity: [5.0; 3],
     };
-    let lights = shot.scene_lights(&[sun, lamp]).unwrap();
+    let lights = shot.scene_lights(&[sun, lamp], DVec3::ZERO).unwrap();
     assert!(
         matches!(lights[0].emitter, Emitter::Directional { illuminance, direction }
         if illuminance == [1.0, 2.0, 3.0] && direction == [0.0, -1.0, 0.0])
     );
     assert_eq!((lights[1].emitter, lights[1].shadow_map), (lamp, 64));
-    let error = shot.scene_lights(&[sun]).unwrap_err().to_string();
+    let error = shot
+        .scene_lights(&[sun], DVec3::ZERO)
+        .unwrap_err()
+        .to_string();
     assert_eq!(
         error,
         "--set light.1.shadow_map: expected index 0 of a list of one, found 1"
@@ -773,7 +777,7 @@ fn every_kind_of_light_and_medium_survives_being_written_as_a_shot() {
         },
     ];
     let shot = scene_shot(&[]);
-    let lights = shot.scene_lights(&emitters).unwrap();
+    let lights = shot.scene_lights(&emitters, DVec3::ZERO).unwrap();
     assert!(lights.iter().map(|light| light.emitter).eq(emitters));
     let component = |phase| MediumComponent {
         sigma_s: [0.1, 0.2, 0.3],
@@ -789,6 +793,7 @@ fn every_kind_of_light_and_medium_survives_being_written_as_a_shot() {
 /// A scene with one camera that looks along -z from the origin.
 fn resolve(shot: &Shot, base: Camera) -> Result<Camera, String> {
     let scene = SceneCameras {
+        origin: DVec3::ZERO,
         named: &[("main".to_owned(), base)],
         framed: Some(base),
         farthest: &|_| 80.0,

@@ -1,6 +1,6 @@
 //! Images of rectangles, known in closed form.
 
-use glam::{Affine3A, DMat4, DVec3, Vec3};
+use glam::{DAffine3, DMat4, DVec3, Vec3};
 use tyndall::{
     cpu::LightTexture,
     frame::{Camera, DepthRange, Emitter, Projection, ShadowProjection},
@@ -486,7 +486,8 @@ fn nodes_move() {
     let targets = GBufferTargets::new(&gpu.device, [4; 2]).unwrap();
     let camera = camera(false, DepthRange::Standard);
     for z in [2.0, 4.0] {
-        scene.nodes[0].parent_from_local = Affine3A::from_translation(Vec3::new(0.0, 0.0, -z));
+        scene.nodes[0].parent_from_local =
+            DAffine3::from_translation(DVec3::new(0.0, 0.0, -f64::from(z)));
         renderer.place(&gpu.queue, &scene);
         record(gpu, |encoder| {
             renderer.g_buffer(encoder, &targets, &camera, None);

@@ -58,7 +58,7 @@ fn node(parent_from_local: Affine3A, mesh: usize) -> Node {
     Node {
         name: String::new(),
         parent: None,
-        parent_from_local,
+        parent_from_local: parent_from_local.as_daffine3(),
         mesh: Some(mesh),
         camera: None,
         light: None,
@@ -116,7 +116,8 @@ pub(crate) fn clutter(rectangles: usize) -> Scene {
             Vec3::new(1.5 + d, 1.5 + e, -1.0),
             Quat::from_euler(glam::EulerRot::XYZ, 3.0 * a, 3.0 * b, 3.0 * c),
             Vec3::new(5.0 * x, 4.0 * y, 6.0 * z),
-        );
+        )
+        .as_daffine3();
     }
     scene
 }

@@ -9,6 +9,9 @@ use crate::{
 /// The most samples of a rectangular light.
 const MAX_SAMPLES: u32 = 1024;
 
+/// Distance of the eye from the origin, in far planes, beyond which single precision is coarser than a thousandth of what is seen.
+const FARTHEST_EYE: f32 = 8192.0;
+
 /// Checks everything about a frame that does not depend on the backend.
 pub(crate) fn frame(frame: &Frame) -> Checked {
     camera(&frame.camera)?;
@@ -65,6 +68,15 @@ fn camera(camera: &Camera) -> Checked {
         "camera.projection.far",
         "a finite number > near",
         far,
+    )?;
+    require(
+        camera
+            .eye
+            .iter()
+            .all(|x| x.abs() <= FARTHEST_EYE * far.abs().max(near.abs())),
+        "camera.eye",
+        "a point within 8192 far planes of the origin: positions relative to one near the eye, subtracted in f64",
+        camera.eye,
     )?;
     require(
         perspective || camera.depth_range != DepthRange::ReversedInfinite,
