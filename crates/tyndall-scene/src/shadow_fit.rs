@@ -1,9 +1,10 @@
 //! Projections of shadow maps that fit a scene.
 //!
-//! **Bias.** The map holds the surfaces' true depths. The medium looks them up as they are: a surface has no volume, so
-//! there is no acne to fight. Surfaces are looked up at a point moved along their normal by
-//! [`NORMAL_OFFSET_TEXELS`](crate::shading::NORMAL_OFFSET_TEXELS) texels, which clears the depth differences within the
-//! filter's footprint at any slope; see [`shading`](crate::shading). No depth bias is added anywhere.
+//! **Bias.** A texel holds the least distance from the light of the plane that its centre meets, within the texel: the depth of
+//! the centre, and half a texel's slope towards the light. What a surface hides from the light is dark then right up to it; the
+//! centre's own depth would let light through between the steps of a slanted wall, into closed rooms. In exchange up to as
+//! much before a lit surface is dark. Surfaces are looked up at a point moved along their normal, which clears the depth
+//! differences within the filter's footprint at any slope; see [`shading`](crate::shading).
 //!
 //! **Depth** is reversed (1 at the near plane): floating-point depths are then about equally precise at all distances,
 //! and a near plane close to the light costs nothing.

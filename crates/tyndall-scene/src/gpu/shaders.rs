@@ -110,7 +110,8 @@ mod tests {
                     sky_horizon,
                     ambient_tilt,
                     sky_zenith,
-                    normal_offset
+                    normal_offset,
+                    normal_offset_grazing
                 }),
             ),
             (

@@ -5,7 +5,8 @@ use glam::DVec3;
 use tyndall::frame::{Emitter, Frame, Light};
 
 use crate::shading::{
-    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_TEXELS, SKY_HORIZON, SKY_ZENITH, sun_illuminance,
+    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_GRAZING_TEXELS, NORMAL_OFFSET_TEXELS, SKY_HORIZON,
+    SKY_ZENITH, sun_illuminance,
 };
 
 /// `Shade`.
@@ -18,6 +19,8 @@ pub(super) struct ShadeUniform {
     pub(super) ambient_tilt: f32,
     pub(super) sky_zenith: [f32; 3],
     pub(super) normal_offset: f32,
+    pub(super) normal_offset_grazing: f32,
+    _pad: [f32; 3],
 }
 
 impl ShadeUniform {
@@ -30,6 +33,8 @@ impl ShadeUniform {
             ambient_tilt: AMBIENT_TILT as f32,
             sky_zenith: SKY_ZENITH.map(|l| l as f32),
             normal_offset: NORMAL_OFFSET_TEXELS as f32,
+            normal_offset_grazing: NORMAL_OFFSET_GRAZING_TEXELS as f32,
+            _pad: [0.0; 3],
         }
     }
 }

@@ -81,7 +81,11 @@ impl<'a> SurfaceLight<'a> {
     fn visibility(&self, surface: &SurfacePoint, optics: &Optics) -> DVec3 {
         let mapped = self.shadow.as_ref();
         let mapped = mapped.map_or(DVec3::ONE, |shadow| {
-            shadow.visibility(surface.point, surface.normal)
+            // Lights with maps are one point, or a direction.
+            let incident = self.samples.first();
+            let incident = incident.map(|sample| sample.incident(surface.point, optics));
+            let direction = incident.map_or(DVec3::ZERO, |incident| incident.direction);
+            shadow.visibility(surface.point, surface.normal, direction)
         });
         let traced = self.traced.as_ref();
         let traced = traced.map_or(DVec3::ONE, |shadow| shadow.visibility(surface, optics));

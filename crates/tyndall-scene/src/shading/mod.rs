@@ -11,8 +11,9 @@
 //! Attenuation between surface and eye is left to the composite.
 //!
 //! **Visibility** compares depths at the four texels round a point, weighted bilinearly, each multiplied by the tints of
-//! the glass layers before the point. The point is `p` moved along `n` by [`NORMAL_OFFSET_TEXELS`] texels, as large as
-//! texels are at `p`. The four texels are at most sqrt(2) texels away; on a plane of any slope an offset of as much
+//! the glass layers before the point. The point is `p` moved along `n` by [`NORMAL_OFFSET_TEXELS`] and, times the sine between `n`
+//! and `l`, [`NORMAL_OFFSET_GRAZING_TEXELS`] texels, as large as texels are at `p`. The four texels are at most sqrt(2) texels
+//! away and hold their plane's nearest depth, half as much nearer; on a plane of any slope an offset of 1.5 sqrt(2) times the sine
 //! clears the depths there, and the rest is for curved surfaces. Texels outside the map are lit; a cube's are clamped to
 //! the face. A texel where nothing was drawn is lit.
 //!
@@ -43,7 +44,7 @@ mod traced;
 
 pub use light::{AMBIENT, AMBIENT_TILT, RECT_SAMPLES};
 pub use radiance::shade;
-pub use shadow_map::NORMAL_OFFSET_TEXELS;
+pub use shadow_map::{NORMAL_OFFSET_GRAZING_TEXELS, NORMAL_OFFSET_TEXELS};
 #[cfg(feature = "gpu")]
 pub(crate) use sky::sun_illuminance;
 pub use sky::{SKY_HORIZON, SKY_ZENITH};
