@@ -65,7 +65,8 @@ fn frame(lights: Vec<Light>, sigma_a: f32) -> Frame {
     }
 }
 
-/// The image of a scene under one light with its fitted map of `texels` a side.
+/// The image of a scene under one light with its fitted map of `texels` a side; without a map it is unblocked, but for a
+/// rectangle.
 fn image(scene: &Scene, emitter: Emitter, texels: Option<u32>, sigma_a: f32) -> Vec<DVec3> {
     let tracer = Tracer::new(scene);
     let mut light = light(emitter);
@@ -85,7 +86,8 @@ fn image(scene: &Scene, emitter: Emitter, texels: Option<u32>, sigma_a: f32) -> 
     };
     let frame = frame(vec![light], sigma_a);
     let g_buffer = tracer.g_buffer(&frame.camera, SIZE, &quiet);
-    let image = shade(&g_buffer, &frame, &[inputs], Some(&tracer));
+    let traced = texels.is_some() || matches!(emitter, Emitter::Rect { .. });
+    let image = shade(&g_buffer, &frame, &[inputs], traced.then_some(&tracer));
     assert!(image.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
     image.into_iter().map(vector).collect()
 }
