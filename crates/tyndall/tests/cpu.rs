@@ -360,3 +360,35 @@ fn incremental_agrees_with_min_max() {
         assert!(error < 0.012, "{}: {error}", stage.name);
     }
 }
+
+#[test]
+fn a_spot_of_a_half_space_has_no_texture() {
+    let mut stage = stages()
+        .into_iter()
+        .find(|stage| stage.name.starts_with("spot through a picture"))
+        .expect("a spot with a texture");
+    let mut refusal = |angle: f32| {
+        if let Emitter::Spot { outer, .. } = &mut stage.frame.lights[0].emitter {
+            *outer = angle;
+        }
+        let lights = stage.cpu_lights();
+        let inputs = CpuInputs {
+            size: SIZE,
+            depth: &stage.depth,
+            lights: &lights,
+            occluders: None,
+        };
+        let techniques = TechniqueChoice::from(technique("ray-march", &[]));
+        let result = cpu::render(&stage.frame, &inputs, &techniques, &|_, _| {});
+        result.err().map(|error| error.to_string())
+    };
+    let half = std::f32::consts::FRAC_PI_2;
+    assert_eq!(refusal(half.next_down()), None);
+    let words = refusal(half).expect("refused");
+    assert!(
+        words.starts_with("lights[0].texture: expected no texture: "),
+        "{words}"
+    );
+    let words = refusal(half.next_up()).expect("refused");
+    assert!(words.starts_with("lights[0].emitter.outer: "), "{words}");
+}

@@ -339,3 +339,42 @@ fn a_light_inside_a_corner_stays_finite() {
     }
     assert!(Geometry::new(&opaque(&room)).bounds().is_some());
 }
+
+/// Without a map a light's shadows are traced, sharp and of no texels: those of a fine map but for its borders.
+#[test]
+fn without_a_map_all_lights_are_traced() {
+    let plate = quad(vec3(-1.0, 2.0, -1.0), 2.0 * Vec3::X, 2.0 * Vec3::Z);
+    let scene = opaque(&[ground(), plate.to_vec()].concat());
+    let tracer = Tracer::new(&scene);
+    let g_buffer = tracer.g_buffer(&from_above(), SIZE, &|_, _| ());
+    let (position, intensity) = ([0.5, 5.0, -0.5], [90.0; 3]);
+    let lamp = Emitter::Point {
+        position,
+        intensity,
+    };
+    let spot = Emitter::Spot {
+        position,
+        direction: [0.0, -1.0, 0.0],
+        intensity,
+        inner: 0.5,
+        outer: 0.9,
+    };
+    for emitter in [SUN, lamp, spot] {
+        let traced = shade(
+            &g_buffer,
+            &frame(vec![light(emitter)], 0.0),
+            &[CpuLightInputs::default()],
+            Some(&tracer),
+        );
+        let mapped = image(&scene, emitter, Some(2048), 0.0);
+        let open = image(&scene, emitter, None, 0.0);
+        let differs = |a: DVec3, b: DVec3| (a - b).length() > 1e-4 * a.max(b).length();
+        let count = |of: &dyn Fn(usize) -> bool| (0..open.len()).filter(|&i| of(i)).count();
+        let shaded = count(&|i| differs(vector(traced[i]), open[i]));
+        let apart = count(&|i| differs(vector(traced[i]), mapped[i]));
+        assert!(
+            shaded > 100 && apart < shaded / 10,
+            "{emitter:?}: {shaded}, {apart}"
+        );
+    }
+}

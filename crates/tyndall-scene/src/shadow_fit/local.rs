@@ -12,9 +12,11 @@ use crate::geometry::Geometry;
 /// Smallest distance of the near plane, relative to the far plane's. Surfaces closer to the light cast no shadow.
 const NEAR_OVER_FAR: f64 = 1e-4;
 
-/// Half angle \[rad] of a cone beyond which a spot has a cube. The map that a cone just fits in is tan(angle) to each side
-/// of the axis: at 60 degrees 1.7 times as coarse in its middle as a face of a cube, at 90 degrees endless.
-pub const WIDEST_SINGLE_MAP: f64 = std::f64::consts::FRAC_PI_3;
+/// Half angle \[rad] of a cone beyond which a spot has a cube: 70 degrees. The map that a cone just fits in is tan(angle) to
+/// each side of the axis, endless at 90 degrees. Relative errors of a wood under such a spot, of a map of 294^2 texels and
+/// of a cube of as many, 6 x 120^2: 0.0019 and 0.0032 at 55 degrees, 0.0083 and 0.0090 at 70, 0.0120 and 0.0128 at 75; at
+/// twice the side 0.0041 and 0.0051 at 70, 0.0068 and 0.0073 at 75.
+pub const WIDEST_SINGLE_MAP: f64 = 70.0 * std::f64::consts::PI / 180.0;
 
 pub(super) fn spot(
     geometry: &Geometry,

@@ -78,7 +78,7 @@ pub fn fit(geometry: &Geometry, emitter: &Emitter) -> Option<ShadowProjection> {
 /// As [`fit`], but a directional light's map holds the shadows that the camera's rays pass and leaves out the rest of the
 /// scene, where that at least halves the map's area.
 ///
-/// `geometry` is all that may cast a shadow, `seen.tracer` has what is there now. Up to 8192 of the camera's rays are cast,
+/// `geometry` is all that may cast a shadow, `seen.tracer` has what is there now. Up to 4096 of the camera's rays are cast,
 /// up to where they end, and the stretches of them that surfaces shade are found exactly; a caster whose shadow no ray
 /// passes needs no place on the map. Shadows at the rim are left out as long as all of them together are below a thousandth
 /// of the light that is seen, or of all shadows, whichever is less: those at the far edge of a great plain, say, through a

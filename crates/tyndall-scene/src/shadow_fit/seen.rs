@@ -14,7 +14,7 @@ use super::{Seen, sun::LightPlane};
 use crate::view::View;
 
 /// The most rays that are cast.
-const RAYS: u32 = 8192;
+const RAYS: u32 = 4096;
 
 /// The share of light that any surface is taken to reflect.
 const ALBEDO: f64 = 0.5;
