@@ -385,10 +385,9 @@ fn a_spot_of_a_half_space_has_no_texture() {
     let half = std::f32::consts::FRAC_PI_2;
     assert_eq!(refusal(half.next_down()), None);
     let words = refusal(half).expect("refused");
-    assert!(
-        words.starts_with("lights[0].texture: expected no texture: "),
-        "{words}"
-    );
+    let expected = "`lights[0].emitter.outer` must be below pi/2 rad with a texture, ";
+    assert!(words.starts_with(expected), "{words}");
     let words = refusal(half.next_up()).expect("refused");
-    assert!(words.starts_with("lights[0].emitter.outer: "), "{words}");
+    let expected = "`lights[0].emitter.outer` must be an angle above 0 and up to pi/2 rad, ";
+    assert!(words.starts_with(expected), "{words}");
 }

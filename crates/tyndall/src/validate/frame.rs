@@ -113,8 +113,8 @@ fn light(field: &str, light: &Light) -> Checked {
         if let Emitter::Spot { outer, .. } = light.emitter {
             require(
                 outer < FRAC_PI_2,
-                format!("{field}.texture"),
-                "no texture: a spot of pi/2 rad has none, for it would be tan(outer) wide; outer must be below pi/2",
+                format!("{field}.emitter.outer"),
+                "below pi/2 rad with a texture, which is tan(outer) wide",
                 outer,
             )?;
         }
