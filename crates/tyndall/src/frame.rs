@@ -156,7 +156,7 @@ pub enum Emitter {
         intensity: [f32; 3],
         /// Angle from the axis where the light begins to fade \[rad] (0 <= inner < outer).
         inner: f32,
-        /// Angle from the axis where the light ends \[rad] (< pi/2).
+        /// Angle from the axis where the light ends \[rad] (<= pi/2; below it with a texture).
         outer: f32,
     },
     /// A rectangle that shines to one side, along cross(edge_x, edge_y), with a cosine.
@@ -227,14 +227,15 @@ impl Light {
 /// The projection that a shadow map was rendered with. Its depth is a depth buffer's: clip z / clip w in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShadowProjection {
-    /// One square or oblong map: a directional light's orthographic or a spot's perspective one.
+    /// One square or oblong map: a directional light's orthographic or a spot's perspective one, which
+    /// gets coarse as the cone widens: beyond some 70 degrees a cube is the better one.
     Single {
         /// World space to the map's clip space, column-major, z in [0, 1], y up.
         clip_from_world: [[f32; 4]; 4],
         /// True where the map holds 1 at its near plane and 0 at its far plane.
         reversed_depth: bool,
     },
-    /// Six square faces round a point light, 90 degrees each, in the order +X, -X, +Y, -Y, +Z, -Z
+    /// Six square faces round a point light or a spot, 90 degrees each, in the order +X, -X, +Y, -Y, +Z, -Z
     /// and with the orientation of WebGPU's and Direct3D's cube textures.
     Cube {
         /// Distance of each face's near plane along its axis \[m] (> 0).
@@ -258,7 +259,7 @@ pub enum TexturePlacement {
         /// World-space edge from the texture's top to its bottom \[m].
         edge_y: [f32; 3],
     },
-    /// Spot light: the texture fills the square round the cone, tan(outer) to each side of the axis.
+    /// Spot light: the texture fills the square round the cone, tan(outer) to each side of the axis: outer < pi/2.
     Cone {
         /// World-space direction that is up in the texture; must not be parallel to the axis.
         up: [f32; 3],

@@ -392,3 +392,34 @@ fn an_eye_that_single_precision_cannot_hold_is_refused() {
         assert!(said.is_none_or(names));
     }
 }
+
+#[test]
+fn a_spot_of_a_half_space_has_no_texture() {
+    let mut stage = stages()
+        .into_iter()
+        .find(|stage| stage.name.starts_with("spot through a picture"))
+        .expect("a spot with a texture");
+    let mut refusal = |angle: f32| {
+        if let Emitter::Spot { outer, .. } = &mut stage.frame.lights[0].emitter {
+            *outer = angle;
+        }
+        let lights = stage.cpu_lights();
+        let inputs = CpuInputs {
+            size: SIZE,
+            depth: &stage.depth,
+            lights: &lights,
+            occluders: None,
+        };
+        let techniques = TechniqueChoice::from(technique("ray-march", &[]));
+        let result = cpu::render(&stage.frame, &inputs, &techniques, &|_, _| {});
+        result.err().map(|error| error.to_string())
+    };
+    let half = std::f32::consts::FRAC_PI_2;
+    assert_eq!(refusal(half.next_down()), None);
+    let words = refusal(half).expect("refused");
+    let expected = "`lights[0].emitter.outer` must be below pi/2 rad with a texture, ";
+    assert!(words.starts_with(expected), "{words}");
+    let words = refusal(half.next_up()).expect("refused");
+    let expected = "`lights[0].emitter.outer` must be an angle above 0 and up to pi/2 rad, ";
+    assert!(words.starts_with(expected), "{words}");
+}

@@ -5,14 +5,14 @@ use std::sync::{Arc, LazyLock};
 use glam::{DVec3, Vec3};
 use tyndall::{
     cpu::LightTexture,
-    frame::{Camera, Emitter, Frame, Light, Medium},
+    frame::{Camera, Emitter, Frame, Light, Medium, ShadowProjection},
     techniques::{Technique, TechniqueChoice},
 };
 use tyndall_scene::{
     framing::{self, Framing},
-    geometry::{Bounds, Geometry},
+    geometry::Bounds,
     scene::Scene,
-    shadow_fit,
+    shadow_fit::{self, Seen},
     trace::Tracer,
 };
 
@@ -126,9 +126,14 @@ impl LoadedShot {
                 &mut parts.medium,
             );
         }
+        let tracer = self.tracer_of(&scene);
+        let lights = parts.lights.iter().map(|spec| Light {
+            emitter: spec.emitter,
+            shadow: self.shadow(&spec.emitter, &parts, &tracer),
+            texture: spec.texture.as_ref().map(|texture| texture.placement),
+        });
+        let lights = lights.collect();
         let extras = parts.lights.iter().zip(textures);
-        let extent = self.motion.as_ref().map(Motion::extent);
-        let extent = extent.unwrap_or_else(|| self.tracer.geometry());
         Ok(ShotFrame {
             lights: extras
                 .map(|(light, texture)| LightExtras {
@@ -138,18 +143,36 @@ impl LoadedShot {
                 .collect(),
             frame: Frame {
                 camera: parts.camera,
-                lights: parts
-                    .lights
-                    .iter()
-                    .map(|spec| light(spec, extent))
-                    .collect(),
+                lights,
                 medium: parts.medium,
             },
             techniques: techniques(self.shot.technique.clone(), &parts.lights),
-            tracer: self.tracer_of(&scene),
+            tracer,
             scene,
             size: self.shot.size,
         })
+    }
+
+    /// The projection of a light's shadow map: round the scene in all frames, or round what is seen in this one, which
+    /// alone needs the tracer.
+    fn shadow(
+        &self,
+        emitter: &Emitter,
+        parts: &Parts,
+        tracer: &LazyTracer,
+    ) -> Option<ShadowProjection> {
+        let extent = self.motion.as_ref().map(Motion::extent);
+        let extent = extent.unwrap_or_else(|| self.tracer.geometry());
+        if !matches!(emitter, Emitter::Directional { .. }) {
+            return shadow_fit::fit(extent, emitter);
+        }
+        let seen = Seen {
+            tracer,
+            camera: &parts.camera,
+            medium: &parts.medium,
+            size: self.shot.size,
+        };
+        shadow_fit::fit_seen(extent, emitter, &seen)
     }
 
     /// The tracer of a scene whose nodes may have moved.
@@ -256,14 +279,6 @@ fn farthest(bounds: &Bounds, eye: Vec3) -> f32 {
         .abs()
         .max((bounds.max - eye).abs())
         .length()
-}
-
-fn light(spec: &LightSpec, extent: &Geometry) -> Light {
-    Light {
-        emitter: spec.emitter,
-        shadow: shadow_fit::fit(extent, &spec.emitter),
-        texture: spec.texture.as_ref().map(|texture| texture.placement),
-    }
 }
 
 fn is_still(scene: &Scene, rest: &Scene) -> bool {

@@ -164,10 +164,10 @@ fn spot(section: &Section<'_>) -> Result<Emitter, ShotError> {
         section,
         &["position", "direction", "intensity", "inner", "outer"],
     )?;
-    let expected = "an angle above 0 and below pi/2 radians";
+    let expected = "an angle above 0 and up to pi/2 radians";
     let outer = section
         .require("outer", expected)?
-        .real(expected, |x| x > 0.0 && x < FRAC_PI_2)?;
+        .real(expected, |x| x > 0.0 && x <= FRAC_PI_2)?;
     let expected = format!("an angle from 0 to below outer = {outer} radians");
     let inner = section
         .require("inner", &expected)?

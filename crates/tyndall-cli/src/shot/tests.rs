@@ -389,7 +389,7 @@ fn every_mistake_names_line_key_expected_and_found() {
         (
             "outer = 0.4",
             "outer = 1.6",
-            "shot.toml:19: light.1.outer: expected an angle above 0 and below pi/2 radians, found 1.6",
+            "shot.toml:19: light.1.outer: expected an angle above 0 and up to pi/2 radians, found 1.6",
         ),
         (
             "shadow_map = 512",

@@ -216,7 +216,6 @@ fn read_light(light: &gltf::khr_lights_punctual::Light<'_>) -> Result<Emitter, R
                     ),
                 ));
             }
-            let outer = outer.min(FRAC_PI_2.next_down());
             Emitter::Spot {
                 position,
                 direction,

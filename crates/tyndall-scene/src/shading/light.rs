@@ -42,11 +42,13 @@ impl<'a> SurfaceLight<'a> {
         if let Emitter::Rect { samples, .. } = &mut sampled.emitter {
             *samples = RECT_SAMPLES;
         }
+        let shadow = SurfaceShadow::new(light, inputs);
+        let tracer = tracer.filter(|_| shadow.is_none());
         Self {
             samples: LightModel::samples(&sampled, inputs.texture),
             bare: LightModel::samples(&bare(light), None),
-            shadow: SurfaceShadow::new(light, inputs),
-            traced: tracer.and_then(|tracer| TracedShadow::new(light, inputs, tracer)),
+            traced: tracer.map(|tracer| TracedShadow::new(light, inputs, tracer)),
+            shadow,
         }
     }
 

@@ -17,9 +17,11 @@
 //! clears the depths there, and the rest is for curved surfaces. Texels outside the map are lit; a cube's are clamped to
 //! the face. A texel where nothing was drawn is lit.
 //!
+//! **Traced** is, on the CPU, the visibility of lights that are given no shadow map, through glass as well.
+//!
 //! **Rectangles** have no shadow map. They shine as [`RECT_SAMPLES`] points, unblocked; visibility is the share of their
-//! light that arrives of as many samples as the light itself says: traced on the CPU, through glass as well; the GPU is
-//! given the visibility that a technique of tyndall's found.
+//! light that arrives of as many samples as the light itself says: traced on the CPU; the GPU is given the visibility that
+//! a technique of tyndall's found.
 //!
 //! **Sky**, where there is no surface: from [`SKY_HORIZON`] to [`SKY_ZENITH`] with the height of the view ray's
 //! direction, times the directional lights' illuminance and the view tint. A scene without a sun has a black sky.
@@ -29,7 +31,7 @@
 //! | `radiance` | all pixels: sky, emission and every light |
 //! | `light` | the irradiance of one light on a surface |
 //! | `shadow_map` | its visibility by a shadow map with glass |
-//! | `traced` | its visibility by rays, for rectangles |
+//! | `traced` | its visibility by rays, where it has no map |
 //! | `sky` | radiance where there is no surface |
 //! | `surface` | the point that a pixel sees |
 //!

@@ -65,7 +65,8 @@ fn frame(lights: Vec<Light>, sigma_a: f32) -> Frame {
     }
 }
 
-/// The image of a scene under one light with its fitted map of `texels` a side.
+/// The image of a scene under one light with its fitted map of `texels` a side; without a map it is unblocked, but for a
+/// rectangle.
 fn image(scene: &Scene, emitter: Emitter, texels: Option<u32>, sigma_a: f32) -> Vec<DVec3> {
     let tracer = Tracer::new(scene);
     let mut light = light(emitter);
@@ -85,7 +86,8 @@ fn image(scene: &Scene, emitter: Emitter, texels: Option<u32>, sigma_a: f32) -> 
     };
     let frame = frame(vec![light], sigma_a);
     let g_buffer = tracer.g_buffer(&frame.camera, SIZE, &quiet);
-    let image = shade(&g_buffer, &frame, &[inputs], Some(&tracer));
+    let traced = texels.is_some() || matches!(emitter, Emitter::Rect { .. });
+    let image = shade(&g_buffer, &frame, &[inputs], traced.then_some(&tracer));
     assert!(image.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
     image.into_iter().map(vector).collect()
 }
@@ -336,4 +338,43 @@ fn a_light_inside_a_corner_stays_finite() {
         );
     }
     assert!(Geometry::new(&opaque(&room)).bounds().is_some());
+}
+
+/// Without a map a light's shadows are traced, sharp and of no texels: those of a fine map but for its borders.
+#[test]
+fn without_a_map_all_lights_are_traced() {
+    let plate = quad(vec3(-1.0, 2.0, -1.0), 2.0 * Vec3::X, 2.0 * Vec3::Z);
+    let scene = opaque(&[ground(), plate.to_vec()].concat());
+    let tracer = Tracer::new(&scene);
+    let g_buffer = tracer.g_buffer(&from_above(), SIZE, &|_, _| ());
+    let (position, intensity) = ([0.5, 5.0, -0.5], [90.0; 3]);
+    let lamp = Emitter::Point {
+        position,
+        intensity,
+    };
+    let spot = Emitter::Spot {
+        position,
+        direction: [0.0, -1.0, 0.0],
+        intensity,
+        inner: 0.5,
+        outer: 0.9,
+    };
+    for emitter in [SUN, lamp, spot] {
+        let traced = shade(
+            &g_buffer,
+            &frame(vec![light(emitter)], 0.0),
+            &[CpuLightInputs::default()],
+            Some(&tracer),
+        );
+        let mapped = image(&scene, emitter, Some(2048), 0.0);
+        let open = image(&scene, emitter, None, 0.0);
+        let differs = |a: DVec3, b: DVec3| (a - b).length() > 1e-4 * a.max(b).length();
+        let count = |of: &dyn Fn(usize) -> bool| (0..open.len()).filter(|&i| of(i)).count();
+        let shaded = count(&|i| differs(vector(traced[i]), open[i]));
+        let apart = count(&|i| differs(vector(traced[i]), mapped[i]));
+        assert!(
+            shaded > 100 && apart < shaded / 10,
+            "{emitter:?}: {shaded}, {apart}"
+        );
+    }
 }

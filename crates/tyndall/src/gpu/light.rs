@@ -5,7 +5,10 @@ use glam::{DMat4, DVec3};
 use super::floats::floats;
 use crate::{
     frame::{self, Emitter, ShadowProjection},
-    light::texture::{MappingKind, TextureMapping},
+    light::{
+        cone,
+        texture::{MappingKind, TextureMapping},
+    },
     physics::reals,
     shader::{block, constant},
     shadow,
@@ -122,8 +125,8 @@ impl LightUniform {
                 self.color = intensity;
                 self.position = floats(reals(position) - eye);
                 self.direction = floats(reals(direction).normalize_or_zero());
-                self.cos_inner = inner.cos();
-                self.cos_outer = outer.cos();
+                self.cos_inner = cone::cosine(inner);
+                self.cos_outer = cone::cosine(outer);
             }
             Emitter::Rect {
                 center,

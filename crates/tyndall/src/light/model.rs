@@ -91,8 +91,8 @@ impl<'a> LightModel<'a> {
                 Shape::Spot {
                     position: reals(position),
                     axis: unit(direction),
-                    cos_inner: f64::from(inner).cos(),
-                    cos_outer: f64::from(outer).cos(),
+                    cos_inner: f64::from(inner).cos().max(0.0),
+                    cos_outer: f64::from(outer).cos().max(0.0),
                 },
                 intensity,
             ),

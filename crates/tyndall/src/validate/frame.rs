@@ -1,5 +1,7 @@
 //! The ranges of a frame, on any backend.
 
+use std::f32::consts::FRAC_PI_2;
+
 use super::require::{Checked, direction, finite, not_negative, not_parallel, require};
 use crate::{
     frame::{Camera, DepthRange, Emitter, Frame, Light, Medium, Projection, ShadowProjection},
@@ -120,6 +122,14 @@ fn light(field: &str, light: &Light) -> Checked {
         shadow(field, &light.emitter, projection)?;
     }
     if let Some(placement) = &light.texture {
+        if let Emitter::Spot { outer, .. } = light.emitter {
+            require(
+                outer < FRAC_PI_2,
+                format!("{field}.emitter.outer"),
+                "below pi/2 rad with a texture, which is tan(outer) wide",
+                outer,
+            )?;
+        }
         require(
             TextureMapping::new(&light.emitter, placement)
                 .is_some_and(|m| m.rows.iter().all(|r| r.is_finite()) && m.origin.is_finite()),
@@ -189,9 +199,9 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
 
 fn cone(name: &dyn Fn(&str) -> String, [inner, outer]: [f32; 2]) -> Checked {
     require(
-        outer > 0.0 && outer < std::f32::consts::FRAC_PI_2,
+        outer > 0.0 && outer <= FRAC_PI_2,
         name("outer"),
-        "an angle between 0 and pi/2 rad, both excluded",
+        "an angle above 0 and up to pi/2 rad",
         outer,
     )?;
     require(
