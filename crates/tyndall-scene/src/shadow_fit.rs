@@ -275,6 +275,7 @@ mod tests {
                 intensity: [1.0; 3],
                 inner: 0.0,
                 outer,
+                radius: 0.0,
             };
             let projection = fit(&geometry, &emitter).unwrap();
             let side = direction.any_orthonormal_vector();
@@ -304,6 +305,7 @@ mod tests {
             let emitter = Emitter::Point {
                 position,
                 intensity: [1.0; 3],
+                radius: 0.0,
             };
             let Some(ShadowProjection::Cube {
                 near,
@@ -328,10 +330,12 @@ mod tests {
             intensity: [1.0; 3],
             inner: 0.1,
             outer: 0.2,
+            radius: 0.0,
         };
         let lamp = Emitter::Point {
             position: [0.0; 3],
             intensity: [1.0; 3],
+            radius: 0.0,
         };
         for (geometry, emitter) in [
             (&nothing, sun([0.0, -1.0, 0.0])),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tyndall::{
     cpu::CpuLightInputs,
-    frame::{Emitter, Light},
+    frame::{Camera, Emitter, Light},
     light::LightModel,
     physics::medium::Optics,
 };
@@ -25,11 +25,12 @@ impl<'a> TracedShadow<'a> {
     /// `None` for lights other than rectangles.
     pub(super) fn new(
         light: &Light,
+        camera: &Camera,
         inputs: &CpuLightInputs<'a>,
         tracer: &'a Tracer,
     ) -> Option<Self> {
         matches!(light.emitter, Emitter::Rect { .. }).then(|| Self {
-            samples: LightModel::samples(light, inputs.texture),
+            samples: LightModel::samples(light, camera, inputs.texture),
             tracer,
         })
     }

@@ -13,29 +13,33 @@ pub fn cone_interval(
     [a, b]: [f64; 2],
 ) -> [f64; 2] {
     let cos2 = cos_outer * cos_outer;
-    let (v_axis, q_axis) = (v.dot(axis), q0.dot(axis));
+    let v_axis = v.dot(axis);
+    // About the point of the ray nearest to the apex, where least is lost.
+    let t = -q0.dot(v);
+    let n = q0 + t * v;
+    let n_axis = n.dot(axis);
     let qa = v_axis * v_axis - cos2;
-    let qb = q_axis * v_axis - cos2 * q0.dot(v);
-    let qc = q_axis * q_axis - cos2 * q0.dot(q0);
-    let discriminant = qb * qb - qa * qc;
-    if discriminant <= 0.0 {
-        // Tangent to the cone or clear of it; a ray along a direction inside the cone always has two roots.
+    let qb = n_axis * v_axis;
+    let qc = n_axis * n_axis - cos2 * n.length_squared();
+    // (qb^2 - qa qc) / cos2: without cancellation where the ray runs along a direction inside the cone, which has two roots however
+    // near to the apex it passes.
+    let discriminant = qa * n.length_squared() + n_axis * n_axis;
+    if discriminant < 0.0 {
         return [a, a];
     }
-    // Citardauq keeps both roots exact where qa is near zero.
-    let w = -(qb + qb.signum() * discriminant.sqrt());
-    let (r0, r1) = (w / qa, qc / w);
+    // Citardauq keeps both roots exact where qa is near zero; through the apex both are 0.
+    let w = -(qb + qb.signum() * cos_outer * discriminant.sqrt());
+    let [r0, r1] = if w == 0.0 { [0.0; 2] } else { [w / qa, qc / w] };
     let (low, high) = (r0.min(r1), r0.max(r1));
     let (from, to) = if qa < 0.0 {
-        let middle = 0.5 * (low + high);
-        if q_axis + middle * v_axis <= 0.0 {
+        if n_axis + 0.5 * (low + high) * v_axis <= 0.0 {
             return [a, a];
         }
-        (low, high)
+        (t + low, t + high)
     } else if v_axis > 0.0 {
-        (high, f64::INFINITY)
+        (t + high, f64::INFINITY)
     } else {
-        (f64::NEG_INFINITY, low)
+        (f64::NEG_INFINITY, t + low)
     };
     [from.max(a), to.min(b)]
 }

@@ -134,7 +134,7 @@ impl Forest {
             side: shadows.map_or(1, |s| s.side() as usize),
         };
         let grid = EpipolarGrid::new(&grid, &params.resolution)?;
-        let factors = is_svd.then(|| svd::factors(&grid, &scene.optics, params.rank as usize));
+        let factors = is_svd.then(|| svd::factors(&grid, &scene.optics, model.radius(), params.rank as usize));
         Some(Self {
             grid,
             trees: shadows.map_or_else(Vec::new, |s| rectify::trees(&grid, s)),

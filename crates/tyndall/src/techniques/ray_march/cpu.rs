@@ -8,7 +8,6 @@ use crate::{
     error::PrepareError,
     integrate::{CpuLight, CpuScene, RayIntegrator, integrand},
     light::LightModel,
-    physics::LIGHT_RADIUS,
     techniques::method::CpuMethod,
 };
 
@@ -97,7 +96,7 @@ impl Steps {
                 let projection = to_light.dot(ray.direction);
                 let height = (to_light - projection * ray.direction)
                     .length()
-                    .max(LIGHT_RADIUS);
+                    .hypot(model.radius());
                 let angle = |s: f64| ((s - projection) / height).atan();
                 Self::Equiangular {
                     projection,
