@@ -8,7 +8,8 @@ use tyndall::{
 };
 
 use crate::shading::{
-    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_TEXELS, RECT_SAMPLES, SKY_HORIZON, SKY_ZENITH, sun_illuminance,
+    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_TEXELS, RECT_SAMPLES, SKY_HORIZON, SKY_ZENITH,
+    sun_illuminance,
 };
 
 /// `Shade`.

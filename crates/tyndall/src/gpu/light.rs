@@ -6,7 +6,7 @@ use super::floats::floats;
 use crate::{
     frame::{self, Emitter, ShadowProjection},
     light::{
-        light_radius,
+        fade, light_radius,
         texture::{MappingKind, TextureMapping},
     },
     physics::reals,
@@ -141,8 +141,7 @@ impl LightUniform {
                 self.color = intensity;
                 self.position = floats(reals(position) - eye);
                 self.direction = floats(reals(direction).normalize_or_zero());
-                self.cos_inner = inner.cos();
-                self.cos_outer = outer.cos();
+                [self.cos_inner, self.cos_outer] = fade(inner, outer).map(|cosine| cosine as f32);
             }
             Emitter::Rect {
                 center,
@@ -159,12 +158,7 @@ impl LightUniform {
         }
     }
 
-    fn set_shadow(
-        &mut self,
-        emitter: &Emitter,
-        projection: &ShadowProjection,
-        eye: DVec3,
-    ) {
+    fn set_shadow(&mut self, emitter: &Emitter, projection: &ShadowProjection, eye: DVec3) {
         let (ShadowProjection::Single { reversed_depth, .. }
         | ShadowProjection::Cube { reversed_depth, .. }) = *projection;
         self.standard_depth = u32::from(!reversed_depth);

@@ -51,11 +51,7 @@ pub struct Incident {
 
 impl<'a> LightModel<'a> {
     /// The light as `camera` sees it, as point sources: itself, or a rectangle's samples (Hammersley points).
-    pub fn samples(
-        light: &Light,
-        camera: &Camera,
-        texture: Option<&'a LightTexture>,
-    ) -> Vec<Self> {
+    pub fn samples(light: &Light, camera: &Camera, texture: Option<&'a LightTexture>) -> Vec<Self> {
         let radius = light_radius(&light.emitter, camera);
         let mapping = light
             .texture
@@ -101,8 +97,8 @@ impl<'a> LightModel<'a> {
                 Shape::Spot {
                     position: reals(position),
                     axis: unit(direction),
-                    cos_inner: f64::from(inner).cos(),
-                    cos_outer: f64::from(outer).cos(),
+                    cos_inner: fade(inner, outer)[0],
+                    cos_outer: fade(inner, outer)[1],
                 },
                 intensity,
             ),
@@ -287,7 +283,15 @@ impl<'a> LightModel<'a> {
     }
 }
 
-/// The smooth edge of a spot's cone, as `KHR_lights_punctual` recommends it; 1 inside, 0 outside.
+/// Cosines of the angles between which a spot fades, inner and outer. They lie 1e-3 apart at least, as `KHR_lights_punctual` has it:
+/// a cone of equal angles has an edge of that width, and one that is narrower all over is nowhere as bright as its intensity.
+pub(crate) fn fade(inner: f32, outer: f32) -> [f64; 2] {
+    let [inner, outer] = [inner, outer].map(|angle| f64::from(angle).cos());
+    [inner.max(outer + 1e-3), outer]
+}
+
+/// The smooth edge of a spot's cone, as `KHR_lights_punctual` recommends it, between two cosines 1e-3 apart at least; 1 inside,
+/// 0 outside.
 pub fn spot_falloff(cos_angle: f64, cos_inner: f64, cos_outer: f64) -> f64 {
     let t = (cos_angle - cos_outer) / (cos_inner - cos_outer).max(1e-3);
     t.clamp(0.0, 1.0).powi(2)

@@ -82,7 +82,12 @@ pub(super) fn factors(grid: &EpipolarGrid, optics: &Optics, radius: f64, rank: u
         Some(distance) => {
             // Beyond the far plane, and of rays that do not meet at all, any value does that leaves K smooth.
             let meets = beta + gamma < PI;
-            let along = distance / if meets { (beta + gamma).sin().max(1e-9) } else { 1e-9 };
+            let along = distance
+                / if meets {
+                    (beta + gamma).sin().max(1e-9)
+                } else {
+                    1e-9
+                };
             let path = along * (gamma.sin() + beta.sin());
             let along = along * (longest / path).min(1.0);
             // Light travels at gamma to the axis backwards, the view ray at beta to the axis.
