@@ -145,6 +145,10 @@ pub enum Emitter {
         position: [f32; 3],
         /// Radiant intensity [W/sr].
         intensity: [f32; 3],
+        /// Radius by which the lamp is softened \[m] (>= 0): at distance d its light is as that of a point at hypot(d, radius), so
+        /// that it stays finite at its very place. 0 is a point, taken as a millionth of its distance from the eye or a thousandth
+        /// of the near plane's, whichever is more; see [`light_radius`](crate::light::light_radius).
+        radius: f32,
     },
     /// A point that shines into a cone, with `KHR_lights_punctual`'s smooth edge.
     Spot {
@@ -154,12 +158,15 @@ pub enum Emitter {
         direction: [f32; 3],
         /// Radiant intensity on the axis [W/sr].
         intensity: [f32; 3],
-        /// Angle from the axis where the light begins to fade \[rad] (0 <= inner < outer).
+        /// Angle from the axis where the light begins to fade \[rad] (0 <= inner <= outer).
         inner: f32,
         /// Angle from the axis where the light ends \[rad] (<= pi/2; below it with a texture).
         outer: f32,
+        /// Radius by which the lamp is softened \[m] (>= 0), as a point's.
+        radius: f32,
     },
-    /// A rectangle that shines to one side, along cross(edge_x, edge_y), with a cosine.
+    /// A rectangle that shines to one side, along cross(edge_x, edge_y), with a cosine. Each of its samples stands for a patch of it
+    /// and is softened by as much ([`patch_radius`](crate::light::patch_radius)).
     Rect {
         /// World-space middle of the rectangle \[m].
         center: [f32; 3],

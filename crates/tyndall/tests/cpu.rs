@@ -11,6 +11,7 @@ use tyndall::{
     camera::CameraRays,
     cpu::{self, CpuInputs},
     frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection},
+    light::light_radius,
     physics::{
         airlight::{AirlightTable, PointOnRay},
         transmittance::transmittance_integral,
@@ -180,12 +181,14 @@ fn an_unshadowed_lamp_is_the_airlight_integral() {
         let lamp = Emitter::Point {
             position,
             intensity: [1.0; 3],
+            radius: 0.0,
         };
         let frame = simple(medium, lamp, reference());
         for (pixel, ray) in render(&frame).iter().zip(rays(&frame.0.camera)) {
             let light = PointOnRay::new(
                 DVec3::from(position.map(f64::from)) - ray.origin,
                 ray.direction,
+                light_radius(&lamp, &frame.0.camera),
             );
             for channel in 0..3 {
                 let (s, a) = (
@@ -372,6 +375,7 @@ fn an_eye_that_single_precision_cannot_hold_is_refused() {
         Emitter::Point {
             position: [0.0; 3],
             intensity: [1.0; 3],
+            radius: 0.0,
         },
         reference(),
     );

@@ -152,32 +152,46 @@ fn directional(section: &Section<'_>) -> Result<Emitter, ShotError> {
 }
 
 fn point(section: &Section<'_>) -> Result<Emitter, ShotError> {
-    only(section, &["position", "intensity"])?;
+    only(section, &["position", "intensity", "radius"])?;
     Ok(Emitter::Point {
         position: section.point("position")?.as_vec3().into(),
         intensity: section.color("intensity")?,
+        radius: lamp_radius(section)?,
     })
 }
 
 fn spot(section: &Section<'_>) -> Result<Emitter, ShotError> {
-    only(
-        section,
-        &["position", "direction", "intensity", "inner", "outer"],
-    )?;
+    let own = [
+        "position",
+        "direction",
+        "intensity",
+        "inner",
+        "outer",
+        "radius",
+    ];
+    only(section, &own)?;
     let expected = "an angle above 0 and up to pi/2 radians";
     let outer = section
         .require("outer", expected)?
         .real(expected, |x| x > 0.0 && x <= FRAC_PI_2)?;
-    let expected = format!("an angle from 0 to below outer = {outer} radians");
+    let expected = format!("an angle from 0 to outer = {outer} radians");
     let inner = section
         .require("inner", &expected)?
-        .real(&expected, |x| x >= 0.0 && x < outer)?;
+        .real(&expected, |x| x >= 0.0 && x <= outer)?;
     Ok(Emitter::Spot {
         position: section.point("position")?.as_vec3().into(),
         direction: section.direction("direction")?,
         intensity: section.color("intensity")?,
         inner,
         outer,
+        radius: lamp_radius(section)?,
+    })
+}
+
+/// The radius of a point or spot light \[m].
+fn lamp_radius(section: &Section<'_>) -> Result<f32, ShotError> {
+    section.get("radius").map_or(Ok(0.0), |field| {
+        field.real("a radius of at least 0 metres", |x| x >= 0.0)
     })
 }
 
@@ -300,10 +314,12 @@ fn emitter_value(emitter: &Emitter, origin: DVec3) -> Value {
         Emitter::Point {
             position,
             intensity,
+            radius,
         } => Value::scene_table([
             ("type", "point".into()),
             ("position", point(position)),
             ("intensity", intensity.into()),
+            ("radius", radius.into()),
         ]),
         Emitter::Spot {
             position,
@@ -311,6 +327,7 @@ fn emitter_value(emitter: &Emitter, origin: DVec3) -> Value {
             intensity,
             inner,
             outer,
+            radius,
         } => Value::scene_table([
             ("type", "spot".into()),
             ("position", point(position)),
@@ -318,6 +335,7 @@ fn emitter_value(emitter: &Emitter, origin: DVec3) -> Value {
             ("intensity", intensity.into()),
             ("inner", inner.into()),
             ("outer", outer.into()),
+            ("radius", radius.into()),
         ]),
         Emitter::Rect {
             center,

@@ -92,6 +92,7 @@ fn a_whole_shot_is_read() {
             intensity: [4.0, 5.0, 6.0],
             inner: 0.2,
             outer: 0.4,
+            radius: 0.0,
         }
     );
     let texture = lights[1].texture.as_ref().unwrap();
@@ -694,6 +695,7 @@ fn lights_of_the_scene_may_have_their_own_technique() {
     let lamp = Emitter::Point {
         position: [1.0; 3],
         intensity: [5.0; 3],
+        radius: 0.0,
     };
     let lights = shot.scene_lights(&[lamp, lamp], DVec3::ZERO).unwrap();
     assert_eq!(lights[0].technique, None);
@@ -731,6 +733,7 @@ fn overrides_change_what_the_scene_gives() {
     let lamp = Emitter::Point {
         position: [1.0; 3],
         intensity: [5.0; 3],
+        radius: 0.0,
     };
     let lights = shot.scene_lights(&[sun, lamp], DVec3::ZERO).unwrap();
     assert!(
@@ -767,6 +770,7 @@ fn every_kind_of_light_and_medium_survives_being_written_as_a_shot() {
             intensity: [1.5; 3],
             inner: 0.0,
             outer: 0.7,
+            radius: 0.0,
         },
         Emitter::Rect {
             center: [0.0; 3],

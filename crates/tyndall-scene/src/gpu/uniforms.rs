@@ -1,12 +1,15 @@
 //! The uniform blocks of surface shading, member by member as in `shade_surface.wesl` and `shade_light.wesl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
-use tyndall::frame::{Emitter, Frame, Light};
+use glam::{DVec3, Vec3};
+use tyndall::{
+    frame::{Emitter, Frame, Light},
+    light::patch_radius,
+};
 
 use crate::shading::{
-    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_GRAZING_TEXELS, NORMAL_OFFSET_TEXELS, SKY_HORIZON,
-    SKY_ZENITH, sun_illuminance,
+    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_GRAZING_TEXELS, NORMAL_OFFSET_TEXELS, RECT_SAMPLES,
+    SKY_HORIZON, SKY_ZENITH, sun_illuminance,
 };
 
 /// `Shade`.
@@ -44,9 +47,9 @@ impl ShadeUniform {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct ShadeLightUniform {
     pub(super) edge_x: [f32; 3],
-    _pad_x: f32,
+    pub(super) patch_radius: f32,
     pub(super) edge_y: [f32; 3],
-    _pad_y: f32,
+    pub(super) whole_radius: f32,
 }
 
 impl ShadeLightUniform {
@@ -55,11 +58,13 @@ impl ShadeLightUniform {
             Emitter::Rect { edge_x, edge_y, .. } => (edge_x, edge_y),
             _ => ([0.0; 3], [0.0; 3]),
         };
+        let [x, y] = [edge_x, edge_y].map(|edge| Vec3::from(edge).as_dvec3());
+        let area = x.cross(y).length();
         Self {
             edge_x,
-            _pad_x: 0.0,
+            patch_radius: patch_radius(area, RECT_SAMPLES) as f32,
             edge_y,
-            _pad_y: 0.0,
+            whole_radius: patch_radius(area, 1) as f32,
         }
     }
 }

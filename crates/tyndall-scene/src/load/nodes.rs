@@ -203,6 +203,7 @@ fn read_light(light: &gltf::khr_lights_punctual::Light<'_>) -> Result<Emitter, R
         Kind::Point => Emitter::Point {
             position,
             intensity: strength,
+            radius: 0.0,
         },
         Kind::Spot {
             inner_cone_angle: inner,
@@ -212,7 +213,7 @@ fn read_light(light: &gltf::khr_lights_punctual::Light<'_>) -> Result<Emitter, R
                 return Err(broken(
                     place(),
                     format!(
-                        "must have 0 <= innerConeAngle < outerConeAngle <= pi/2, found {inner} and {outer}"
+                        "must have 0 <= innerConeAngle <= outerConeAngle <= pi/2, found {inner} and {outer}"
                     ),
                 ));
             }
@@ -220,8 +221,9 @@ fn read_light(light: &gltf::khr_lights_punctual::Light<'_>) -> Result<Emitter, R
                 position,
                 direction,
                 intensity: strength,
-                inner: inner.min(outer.next_down()),
+                inner: inner.min(outer),
                 outer,
+                radius: 0.0,
             }
         }
     })

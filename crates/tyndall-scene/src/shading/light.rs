@@ -3,8 +3,8 @@
 use glam::DVec3;
 use tyndall::{
     cpu::CpuLightInputs,
-    frame::{Emitter, Light},
-    light::LightModel,
+    frame::{Camera, Emitter, Light},
+    light::{LightModel, patch_radius},
     physics::medium::Optics,
 };
 
@@ -35,6 +35,7 @@ pub(super) struct SurfaceLight<'a> {
 impl<'a> SurfaceLight<'a> {
     pub(super) fn new(
         light: &Light,
+        camera: &Camera,
         inputs: &CpuLightInputs<'a>,
         tracer: Option<&'a Tracer>,
     ) -> Self {
@@ -45,9 +46,9 @@ impl<'a> SurfaceLight<'a> {
         let shadow = SurfaceShadow::new(light, inputs);
         let tracer = tracer.filter(|_| shadow.is_none());
         Self {
-            samples: LightModel::samples(&sampled, inputs.texture),
-            bare: LightModel::samples(&bare(light), None),
-            traced: tracer.map(|tracer| TracedShadow::new(light, inputs, tracer)),
+            samples: LightModel::samples(&sampled, camera, inputs.texture),
+            bare: LightModel::samples(&bare(light), camera, None),
+            traced: tracer.map(|tracer| TracedShadow::new(light, camera, inputs, tracer)),
             shadow,
         }
     }
@@ -102,10 +103,12 @@ fn bare(light: &Light) -> Light {
         Emitter::Spot {
             position,
             intensity,
+            radius,
             ..
         } => Emitter::Point {
             position,
             intensity,
+            radius,
         },
         Emitter::Rect {
             center,
@@ -114,10 +117,11 @@ fn bare(light: &Light) -> Light {
             radiance,
             ..
         } => {
-            let area = vector(edge_x).cross(vector(edge_y)).length() as f32;
+            let area = vector(edge_x).cross(vector(edge_y)).length();
             Emitter::Point {
                 position: center,
-                intensity: radiance.map(|l| l * area),
+                intensity: radiance.map(|l| l * area as f32),
+                radius: patch_radius(area, 1) as f32,
             }
         }
         plain => plain,

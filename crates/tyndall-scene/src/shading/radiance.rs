@@ -26,7 +26,7 @@ pub fn shade(
         .lights
         .iter()
         .zip(lights)
-        .map(|(light, inputs)| SurfaceLight::new(light, inputs, tracer))
+        .map(|(light, inputs)| SurfaceLight::new(light, &frame.camera, inputs, tracer))
         .collect();
     let shading = Shading {
         g_buffer,

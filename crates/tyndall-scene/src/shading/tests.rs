@@ -115,10 +115,12 @@ fn unblocked_ground_is_lambert_s() {
         intensity: [7.0; 3],
         inner,
         outer,
+        radius: 0.0,
     };
     let point = Emitter::Point {
         position,
         intensity: [7.0; 3],
+        radius: 0.0,
     };
     let falloff = |to: DVec3| {
         let (c, i, o) = (
@@ -196,6 +198,7 @@ fn curved_and_flat_surfaces_do_not_shadow_themselves() {
         Emitter::Point {
             position: [1.0, 5.0, 2.0],
             intensity: [9.0; 3],
+            radius: 0.0,
         },
     ] {
         let round = opaque(&[ground(), ball(0.8 * Vec3::Y, 0.8, 48)].concat());
@@ -205,7 +208,7 @@ fn curved_and_flat_surfaces_do_not_shadow_themselves() {
         );
         let tracer = Tracer::new(&round);
         let g_buffer = tracer.g_buffer(&from_above(), SIZE, &|_, _| ());
-        let source = LightModel::samples(&light(emitter), None).remove(0);
+        let source = LightModel::samples(&light(emitter), &from_above(), None).remove(0);
         let mut acne = 0;
         let mut compared = 0;
         for (pixel, (with, without)) in with.iter().zip(&without).enumerate() {
@@ -262,6 +265,7 @@ fn the_sky_follows_the_sun() {
     let lamp = Emitter::Point {
         position: [0.0; 3],
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     assert!(
         image(&Scene::default(), lamp, Some(16), 0.0)
@@ -332,6 +336,7 @@ fn a_light_inside_a_corner_stays_finite() {
             Emitter::Point {
                 position,
                 intensity: [1.0; 3],
+                radius: 0.0,
             },
             Some(32),
             0.0,
@@ -351,6 +356,7 @@ fn without_a_map_all_lights_are_traced() {
     let lamp = Emitter::Point {
         position,
         intensity,
+        radius: 0.0,
     };
     let spot = Emitter::Spot {
         position,
@@ -358,6 +364,7 @@ fn without_a_map_all_lights_are_traced() {
         intensity,
         inner: 0.5,
         outer: 0.9,
+        radius: 0.0,
     };
     for emitter in [SUN, lamp, spot] {
         let traced = shade(

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tyndall::{
     cpu::{CpuLightInputs, LightSource},
-    frame::Light,
+    frame::{Camera, Light},
     light::LightModel,
     physics::medium::Optics,
 };
@@ -22,9 +22,14 @@ pub(super) struct TracedShadow<'a> {
 }
 
 impl<'a> TracedShadow<'a> {
-    pub(super) fn new(light: &Light, inputs: &CpuLightInputs<'a>, tracer: &'a Tracer) -> Self {
+    pub(super) fn new(
+        light: &Light,
+        camera: &Camera,
+        inputs: &CpuLightInputs<'a>,
+        tracer: &'a Tracer,
+    ) -> Self {
         Self {
-            samples: LightModel::samples(light, inputs.texture),
+            samples: LightModel::samples(light, camera, inputs.texture),
             tracer,
         }
     }

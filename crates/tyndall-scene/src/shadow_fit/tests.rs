@@ -87,6 +87,7 @@ fn a_spot_s_map_holds_its_cone_and_all_depths() {
             intensity: [1.0; 3],
             inner: 0.0,
             outer,
+            radius: 0.0,
         };
         let projection = fit(&geometry, &emitter).unwrap();
         let side = direction.any_orthonormal_vector();
@@ -116,6 +117,7 @@ fn a_point_s_cube_reaches_all_corners() {
         let emitter = Emitter::Point {
             position,
             intensity: [1.0; 3],
+            radius: 0.0,
         };
         let Some(ShadowProjection::Cube {
             near,
@@ -140,10 +142,12 @@ fn no_map_where_nothing_blocks() {
         intensity: [1.0; 3],
         inner: 0.1,
         outer: 0.2,
+        radius: 0.0,
     };
     let lamp = Emitter::Point {
         position: [0.0; 3],
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     for (geometry, emitter) in [
         (&nothing, sun([0.0, -1.0, 0.0])),
@@ -174,6 +178,7 @@ fn a_spot_beyond_the_widest_single_map_has_a_cube() {
         intensity: [1.0; 3],
         inner: 0.0,
         outer,
+        radius: 0.0,
     };
     let narrow = WIDEST_SINGLE_MAP as f32 - 1e-3;
     for outer in [0.01, 1.0, narrow] {
@@ -183,6 +188,7 @@ fn a_spot_beyond_the_widest_single_map_has_a_cube() {
     let lamp = Emitter::Point {
         position: [0.0, 3.0, 0.0],
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     for outer in [
         WIDEST_SINGLE_MAP as f32 + 1e-3,

@@ -52,6 +52,7 @@ mod tests {
     const LAMP: Emitter = Emitter::Point {
         position: [0.25, 0.5, -0.25],
         intensity: [1.0; 3],
+        radius: 0.0,
     };
 
     #[test]

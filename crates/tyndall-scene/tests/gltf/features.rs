@@ -422,6 +422,7 @@ fn lights() {
             Emitter::Point {
                 position: [0.0; 3],
                 intensity: [1.0; 3],
+                radius: 0.0,
             },
         ),
         (
@@ -432,6 +433,7 @@ fn lights() {
                 intensity: [2.0; 3],
                 inner: 0.25,
                 outer: 0.5,
+                radius: 0.0,
             },
         ),
     ];

@@ -259,6 +259,7 @@ fn cube_faces_are_webgpus() {
     let emitter = Emitter::Point {
         position: light.to_array(),
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     let (near, far) = (0.5, 20.0);
     for reversed_depth in [false, true] {

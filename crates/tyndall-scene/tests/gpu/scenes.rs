@@ -189,6 +189,7 @@ pub(crate) fn lights_with_maps() -> Vec<(&'static str, Emitter, ShadowProjection
         intensity: [1.0; 3],
         inner: 0.1,
         outer: 0.7,
+        radius: 0.0,
     };
     let spot_view = rh::view::look_to_mat4(
         DVec3::from(position.map(f64::from)),
@@ -198,6 +199,7 @@ pub(crate) fn lights_with_maps() -> Vec<(&'static str, Emitter, ShadowProjection
     let point = Emitter::Point {
         position,
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     let fov = |near, far| rh::proj::directx::perspective(1.4, 1.0, near, far) * spot_view;
     vec![

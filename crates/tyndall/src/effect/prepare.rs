@@ -128,7 +128,7 @@ impl Effect {
             technique,
         } = planned;
         let method = technique.gpu()?;
-        let (uniform, variant) = LightUniform::new(light, parts.rays.eye, inputs.glass.is_some());
+        let (uniform, variant) = LightUniform::new(light, &frame.camera, inputs.glass.is_some());
         let variant = variant.within(&frame.medium);
         let key = (Owner::Light(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);

@@ -1,10 +1,5 @@
 //! The part of a ray that is inside a spot light's cone.
 
-/// Cosine of a spot's angle \[rad], 0 to pi/2: exactly 0 at f32's pi/2, which is a little more than pi/2.
-pub(crate) fn cosine(angle: f32) -> f32 {
-    angle.cos().max(0.0)
-}
-
 /// The part of the ray `q0 + s v` inside the cone of unit `axis` and half angle acos(`cos_outer`) <= pi/2 about the
 /// origin, intersected with `[a, b]`; empty (`a >= b`) where it misses. `v` has unit length.
 ///
@@ -34,10 +29,9 @@ pub fn cone_interval(
     if v_axis == 0.0 && cos_outer == 0.0 {
         return if n_axis > 0.0 { [a, b] } else { [a, a] };
     }
-    // Citardauq keeps both roots exact where qa is near zero.
+    // Citardauq keeps both roots exact where qa is near zero; through the apex both are 0.
     let w = -(qb + qb.signum() * cos_outer * beside.sqrt());
-    let r0 = w / qa;
-    let r1 = if w == 0.0 { r0 } else { qc / w };
+    let [r0, r1] = if w == 0.0 { [0.0; 2] } else { [w / qa, qc / w] };
     let (low, high) = (r0.min(r1), r0.max(r1));
     let (from, to) = if qa < 0.0 {
         let middle = 0.5 * (low + high);
@@ -58,6 +52,7 @@ mod tests {
     use std::f32::consts::FRAC_PI_2;
 
     use super::*;
+    use crate::light::model::fade;
     use glam::DVec3;
 
     /// A small linear congruential sequence in [-1, 1].
@@ -80,8 +75,8 @@ mod tests {
             let (q0, v, axis) = (3.0 * vector(), vector().normalize(), vector().normalize());
             // One in eight is as wide as a half space, one is not by a hair.
             let cos_outer = match i % 8 {
-                0 => f64::from(cosine(FRAC_PI_2)),
-                1 => f64::from(cosine(FRAC_PI_2.next_down())),
+                0 => fade(0.0, FRAC_PI_2)[1],
+                1 => fade(0.0, FRAC_PI_2.next_down())[1],
                 _ => (0.05 + 1.52 * (0.5 + 0.5 * next())).cos(),
             };
             let [a, b] = cone_interval(q0, v, axis, cos_outer, [0.0, 10.0]);

@@ -39,10 +39,6 @@ pub const TABLE_WIDTH: usize = 256;
 /// Rows of a table: optical depth.
 pub const TABLE_HEIGHT: usize = 128;
 
-/// A point light is a ball of this radius \[m] inside which 1 / d^2 grows no further: a view ray through the light's
-/// very position stays finite.
-pub const LIGHT_RADIUS: f64 = 1e-3;
-
 /// The tables `near` and `far` of one phase function.
 #[derive(Clone, Debug)]
 pub struct AirlightTable {
@@ -55,19 +51,19 @@ pub struct AirlightTable {
 pub struct PointOnRay {
     /// Distance along the ray of the point nearest to the light \[m]; negative where the light is behind the eye.
     pub projection: f64,
-    /// Distance of the light from that point \[m].
+    /// Distance of the light from that point \[m], > 0.
     pub height: f64,
 }
 
 impl PointOnRay {
-    /// For a light at `to_light` from the ray's origin; `direction` has unit length. The height is at least
-    /// [`LIGHT_RADIUS`], so that a ray through the light stays finite.
-    pub fn new(to_light: DVec3, direction: DVec3) -> Self {
+    /// For a light at `to_light` from the ray's origin; `direction` has unit length. The `radius` \[m] of the light adds to the
+    /// height, so that a ray through the light stays finite: see [`light_radius`](crate::light::light_radius).
+    pub fn new(to_light: DVec3, direction: DVec3, radius: f64) -> Self {
         let projection = to_light.dot(direction);
         let height = (to_light - projection * direction).length();
         Self {
             projection,
-            height: height.max(LIGHT_RADIUS),
+            height: height.hypot(radius),
         }
     }
 
@@ -261,7 +257,7 @@ mod tests {
             let table = AirlightTable::new(phase);
             let mut worst = 0.0_f64;
             // log10 of sigma_t and of the height, projection, start, length.
-            let ranges = [-5.0..=1.0, -3.0..=1.5, -20.0..=40.0, 0.0..=30.0, 0.0..=30.0];
+            let ranges = [-8.0..=1.0, -7.0..=1.5, -20.0..=40.0, 0.0..=30.0, 0.0..=30.0];
             for x in tyndall_testkit::samples::in_box(7, 4_000, ranges) {
                 let [sigma_t, height, projection, a, length] = x.map(f64::from);
                 let sigma_t = 10.0_f64.powf(sigma_t);
@@ -297,7 +293,7 @@ mod tests {
         let phase = Phase::HenyeyGreenstein { g: 0.5 };
         let table = AirlightTable::new(phase);
         let picture = crate::gpu::airlight::upload(&gpu.device, &gpu.queue, &[&table]);
-        let ranges = [-5.0..=0.0, -2.0..=1.5, -20.0..=40.0, 0.0..=30.0, 0.0..=30.0];
+        let ranges = [-8.0..=0.0, -7.0..=1.5, -20.0..=40.0, 0.0..=30.0, 0.0..=30.0];
         let inputs = tyndall_testkit::samples::in_box(11, 20_000, ranges);
         let modules = "import tyndall::physics::airlight::{AirlightLight, airlight_segment};";
         let modules = crate::shader::tests::harness(modules, &[], &[]);

@@ -154,9 +154,11 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
         Emitter::Point {
             position,
             intensity,
+            radius,
         } => {
             finite(&name("position"), position)?;
             not_negative(&name("intensity"), intensity)?;
+            lamp_radius(&name, radius)?;
         }
         Emitter::Spot {
             position,
@@ -164,11 +166,13 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
             intensity,
             inner,
             outer,
+            radius,
         } => {
             finite(&name("position"), position)?;
             direction(&name("direction"), axis)?;
             not_negative(&name("intensity"), intensity)?;
             cone(&name, [inner, outer])?;
+            lamp_radius(&name, radius)?;
         }
         Emitter::Rect {
             center,
@@ -197,6 +201,15 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
     Ok(())
 }
 
+fn lamp_radius(name: &dyn Fn(&str) -> String, radius: f32) -> Checked {
+    require(
+        radius.is_finite() && radius >= 0.0,
+        name("radius"),
+        "a finite number >= 0 [m]",
+        radius,
+    )
+}
+
 fn cone(name: &dyn Fn(&str) -> String, [inner, outer]: [f32; 2]) -> Checked {
     require(
         outer > 0.0 && outer <= FRAC_PI_2,
@@ -205,9 +218,9 @@ fn cone(name: &dyn Fn(&str) -> String, [inner, outer]: [f32; 2]) -> Checked {
         outer,
     )?;
     require(
-        inner >= 0.0 && inner < outer,
+        inner >= 0.0 && inner <= outer,
         name("inner"),
-        "an angle from 0 to below outer [rad]",
+        "an angle from 0 to outer [rad]",
         inner,
     )
 }

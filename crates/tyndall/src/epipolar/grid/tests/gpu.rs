@@ -34,7 +34,7 @@ impl Blocks {
             },
         };
         let rays = case.rays();
-        let (light, variant) = LightUniform::new(&case.light, rays.eye, false);
+        let (light, variant) = LightUniform::new(&case.light, &case.camera, false);
         let uniform = |contents: &[u8]| {
             gpu.device
                 .create_buffer_init(&wgpu::util::BufferInitDescriptor {
