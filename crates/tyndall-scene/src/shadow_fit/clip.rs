@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{extent, rectangle::Rectangle, sun::LightPlane};
+use super::{parts::extent, plane::LightPlane, rectangle::Rectangle};
 use crate::geometry::Geometry;
 
 /// The least and the greatest distance along the light of what lies over a rectangle; `None` where nothing does.

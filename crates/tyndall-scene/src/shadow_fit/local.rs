@@ -6,7 +6,7 @@ use glam::{
 };
 use tyndall::frame::ShadowProjection;
 
-use super::{MARGIN, corners, extent, single};
+use super::parts::{MARGIN, corners, extent, single};
 use crate::geometry::Geometry;
 
 /// Smallest distance of the near plane, relative to the far plane's. Surfaces closer to the light cast no shadow.

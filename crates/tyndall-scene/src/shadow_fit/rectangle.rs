@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::extent;
+use super::parts::extent;
 
 /// The corners of the convex hull, anticlockwise (Andrew 1979, monotone chain).
 fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {

@@ -7,11 +7,25 @@ use rayon::prelude::*;
 use tyndall::{
     camera::{CameraRays, Ray},
     cpu::{LightSource, Occluders, Shade},
+    frame::{Camera, Medium},
     physics::{medium::Optics, transmittance::transmittance_integral},
 };
 
-use super::{Seen, sun::LightPlane};
-use crate::view::View;
+use super::plane::LightPlane;
+use crate::{trace::Tracer, view::View};
+
+/// A camera in its scene and medium, as far as a light's map depends on it.
+#[derive(Clone, Copy)]
+pub struct Seen<'a> {
+    /// The scene's surfaces, where they are now.
+    pub tracer: &'a Tracer,
+    /// The camera.
+    pub camera: &'a Camera,
+    /// The medium that its rays pass.
+    pub medium: &'a Medium,
+    /// Width and height of its image \[pixels].
+    pub size: [u32; 2],
+}
 
 /// The most rays that are cast.
 const RAYS: u32 = 4096;

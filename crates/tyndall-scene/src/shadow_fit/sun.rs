@@ -7,9 +7,12 @@ use glam::{
 use tyndall::frame::ShadowProjection;
 
 use super::{
-    MARGIN, Seen, clip, corners, extent,
+    clip,
+    parts::{MARGIN, corners, extent, single},
+    plane::LightPlane,
     rectangle::{Rectangle, round_points},
-    region, seen, single,
+    region,
+    seen::{self, Seen},
 };
 use crate::geometry::Geometry;
 
@@ -35,32 +38,7 @@ pub(super) fn seen(
         .or_else(|| plane.round(geometry, &whole))
 }
 
-/// The plane that a sun's light crosses at a right angle, with coordinates along `x` and `y`.
-pub(super) struct LightPlane {
-    /// Unit direction of the light.
-    pub(super) forward: DVec3,
-    x: DVec3,
-    y: DVec3,
-}
-
 impl LightPlane {
-    fn new(direction: DVec3) -> Option<Self> {
-        let forward = direction.try_normalize()?;
-        let (x, y) = forward.any_orthonormal_pair();
-        Some(Self { forward, x, y })
-    }
-
-    /// The place at which light that passes a point crosses the plane.
-    fn place(&self, point: DVec3) -> DVec2 {
-        DVec2::new(point.dot(self.x), point.dot(self.y))
-    }
-
-    /// Coordinates along and across an axis of the plane.
-    pub(super) fn along_axis(&self, axis: DVec2, point: DVec3) -> DVec2 {
-        let place = self.place(point);
-        DVec2::new(place.dot(axis), place.dot(axis.perp()))
-    }
-
     fn rectangle(&self, geometry: &Geometry) -> Option<Rectangle> {
         round_points(corners(geometry).map(|p| self.place(p)).collect())
     }

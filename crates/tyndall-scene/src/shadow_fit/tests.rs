@@ -2,10 +2,14 @@
 
 mod seen;
 
-use glam::{DVec4, Vec3, vec3};
+use glam::{DMat4, DVec3, DVec4, Vec3, vec3};
+use tyndall::frame::{Emitter, ShadowProjection};
 
-use super::*;
-use crate::test_scenes::{block, opaque, soup};
+use super::{WIDEST_SINGLE_MAP, fit, parts::extent};
+use crate::{
+    geometry::Geometry,
+    test_scenes::{block, opaque, soup},
+};
 
 fn sun(direction: [f32; 3]) -> Emitter {
     Emitter::Directional {
