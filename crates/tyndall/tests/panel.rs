@@ -128,11 +128,12 @@ fn error(found: &Picture, exact: &Picture) -> f64 {
 #[test]
 fn the_reference_s_glow_is_the_panel_s() {
     for view in views() {
-        for samples in [64, 256] {
+        // Of bare samples 0.13 and 0.05.
+        for (samples, bound) in [(64, 0.05), (256, 0.02)] {
             let stage = stage(view, samples);
             let error = error(&reference(&stage), &exact(&stage));
             println!("{}, {samples}: {error:.4}", stage.name);
-            assert!(error < 0.02, "{}, {samples}: {error}", stage.name);
+            assert!(error < bound, "{}, {samples}: {error}", stage.name);
         }
     }
 }

@@ -360,7 +360,7 @@ fn every_mistake_names_line_key_expected_and_found() {
         (
             "\"directional\"",
             "\"point\"",
-            "shot.toml:11: light.0.direction: no such key: expected type, shadow_map, texture, technique, position or intensity",
+            "shot.toml:11: light.0.direction: no such key: expected type, shadow_map, texture, technique, position, intensity or radius",
         ),
         (
             "direction = [-0.5, -1.0, -0.2]",
@@ -384,8 +384,13 @@ fn every_mistake_names_line_key_expected_and_found() {
         ),
         (
             "inner = 0.2",
-            "inner = 0.4",
-            "shot.toml:18: light.1.inner: expected an angle from 0 to below outer = 0.4 radians, found 0.4",
+            "inner = 0.5",
+            "shot.toml:18: light.1.inner: expected an angle from 0 to outer = 0.4 radians, found 0.5",
+        ),
+        (
+            "inner = 0.2",
+            "inner = 0.2\nradius = -1.0",
+            "shot.toml:19: light.1.radius: expected a radius of at least 0 metres, found -1.0",
         ),
         (
             "outer = 0.4",

@@ -49,7 +49,7 @@ pub(super) struct ShadeLightUniform {
     pub(super) edge_x: [f32; 3],
     pub(super) patch_radius: f32,
     pub(super) edge_y: [f32; 3],
-    pub(super) whole_radius: f32,
+    _pad_y: f32,
 }
 
 impl ShadeLightUniform {
@@ -64,7 +64,7 @@ impl ShadeLightUniform {
             edge_x,
             patch_radius: patch_radius(area, RECT_SAMPLES) as f32,
             edge_y,
-            whole_radius: patch_radius(area, 1) as f32,
+            _pad_y: 0.0,
         }
     }
 }

@@ -115,13 +115,13 @@ fn bare(light: &Light) -> Light {
             edge_x,
             edge_y,
             radiance,
-            ..
+            samples,
         } => {
             let area = vector(edge_x).cross(vector(edge_y)).length();
             Emitter::Point {
                 position: center,
                 intensity: radiance.map(|l| l * area as f32),
-                radius: patch_radius(area, 1) as f32,
+                radius: patch_radius(area, samples) as f32,
             }
         }
         plain => plain,

@@ -1,8 +1,7 @@
 //! Lights: how much of one reaches a point, and from where, if nothing blocks it.
 
 pub mod cone;
-#[cfg(feature = "gpu")]
-pub(crate) mod halton;
+pub(crate) mod hammersley;
 mod model;
 mod radius;
 mod source;

@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use super::{cone, radius::light_radius, source::LightSource, texture::TextureMapping};
+use super::{
+    cone, hammersley::hammersley, radius::light_radius, source::LightSource,
+    texture::TextureMapping,
+};
 use crate::{
     frame::{Camera, Emitter, Light},
     inputs::LightTexture,
@@ -114,8 +117,7 @@ impl<'a> LightModel<'a> {
                 let share = normal.length() / f64::from(samples);
                 (0..samples)
                     .map(|i| {
-                        let u = (f64::from(i) + 0.5) / f64::from(samples);
-                        let v = radical_inverse(i);
+                        let [u, v] = hammersley(i, samples);
                         let position = reals(center) + (u - 0.5) * edge_x + (v - 0.5) * edge_y;
                         let tint = mapping.map_or(DVec3::ONE, |(_, t)| t.sample([u, v]));
                         Self {
@@ -299,18 +301,11 @@ pub fn spot_falloff(cos_angle: f64, cos_inner: f64, cos_outer: f64) -> f64 {
 }
 
 /// The cosine at a sample of a rectangle that shines along `normal` (unit), for a point at `offset` from it \[m]; 0 behind it.
-/// Softened like the distance, so that close to the rectangle samples add up to its whole half space: over all of a plane
-/// `integral cosine / distance^2 = 2 pi` at any height.
+/// Lifted close to it, see [`patch_radius`](super::patch_radius).
 pub fn patch_cosine(offset: DVec3, normal: DVec3, radius: f64) -> f64 {
-    let height = offset.dot(normal);
-    if height > 0.0 {
-        height.hypot(radius) / offset.length().hypot(radius)
-    } else {
-        0.0
-    }
-}
-
-/// Van der Corput's sequence: the bits of `i`, mirrored about the point.
-fn radical_inverse(i: u32) -> f64 {
-    f64::from(i.reverse_bits()) / 4_294_967_296.0
+    let distance = offset.length().hypot(radius);
+    let (height, radius) = (offset.dot(normal) / distance, radius / distance);
+    let over = height.hypot(radius);
+    let lift = 3.0 * over * over * radius * radius / (over + height.abs());
+    if height > 0.0 { height + lift } else { 0.0 }
 }
