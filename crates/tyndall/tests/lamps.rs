@@ -131,6 +131,7 @@ fn a_lamp_on_a_ray_is_its_closed_form_on_the_gpu() {
 }
 
 /// The stages of lamps and spots, seen from beside their light.
+#[cfg(feature = "gpu")]
 fn seen_from_the_light() -> Vec<Stage> {
     let mut found = Vec::new();
     for stage in stages() {

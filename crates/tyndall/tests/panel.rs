@@ -10,7 +10,7 @@ use tyndall::{
     camera::{CameraRays, Ray},
     cpu::{self, CpuInputs, LightSource, Occluders, Shade},
     frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase},
-    techniques::{TechniqueChoice, Value},
+    techniques::TechniqueChoice,
 };
 use tyndall_testkit::{metrics::compare, picture::Picture};
 
@@ -146,6 +146,7 @@ fn the_gpu_s_glow_is_the_panel_s() {
     };
     let effect = common::gpu::effect(gpu);
     let spaced = |spacing: &str| {
+        use tyndall::techniques::Value;
         let spacing = ("spacing", Value::Word(spacing.into()));
         technique("ray-march", &[("steps", Value::Integer(128)), spacing])
     };
