@@ -5,7 +5,7 @@ mod common;
 use std::f64::consts::PI;
 
 use common::{SIZE, Stage, cameras, stage, stages, technique};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use tyndall::{
     camera::CameraRays,
     frame::{
@@ -152,10 +152,11 @@ fn seen_from_the_light() -> Vec<Stage> {
         for distance in [0.0, 1e-5, 1e-3, 0.03] {
             let mut stage = stage.clone();
             let camera = &mut stage.frame.camera;
-            let off = distance * Vec3::new(0.6, -0.3, 0.7).normalize();
-            camera.eye = (Vec3::from(position) + off).to_array();
+            let off = distance * glam::Vec3::new(0.6, -0.3, 0.7).normalize();
+            camera.eye = (glam::Vec3::from(position) + off).to_array();
             if let Emitter::Spot { direction, .. } = light.emitter {
-                camera.forward = (Vec3::from(direction) + Vec3::new(0.1, 0.05, 0.0)).to_array();
+                camera.forward =
+                    (glam::Vec3::from(direction) + glam::Vec3::new(0.1, 0.05, 0.0)).to_array();
             }
             stage.name = format!("{distance} from {}", stage.name);
             found.push(stage);
