@@ -117,7 +117,11 @@ mod tests {
             (
                 &light,
                 "ShadeLight",
-                rust_layout!(ShadeLightUniform { edge_x, edge_y }),
+                rust_layout!(ShadeLightUniform {
+                    edge_x,
+                    patch_radius,
+                    edge_y
+                }),
             ),
         ] {
             assert_eq!(shader.struct_layout(name), Ok(expected), "{name}");
