@@ -221,7 +221,7 @@ fn read_light(light: &gltf::khr_lights_punctual::Light<'_>) -> Result<Emitter, R
                 position,
                 direction,
                 intensity: strength,
-                inner: inner.min(outer),
+                inner,
                 outer,
                 radius: 0.0,
             }
