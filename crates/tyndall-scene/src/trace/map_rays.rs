@@ -36,6 +36,14 @@ struct Face {
     world_from_clip: DMat4,
 }
 
+impl Face {
+    /// Depth, 1 at the near plane, of a point along a texel's ray.
+    fn depth(&self, texel: &Texel, distance: f64) -> f64 {
+        let point = texel.ray.at(distance);
+        self.clip_from_world.project_point3(point).z
+    }
+}
+
 impl MapRays {
     pub(super) fn new(emitter: &Emitter, projection: &ShadowProjection, size: [u32; 2]) -> Self {
         let (ShadowProjection::Single { reversed_depth, .. }
@@ -106,10 +114,7 @@ impl MapRays {
     /// is nearest to the light within the texel. So no light passes between a slanted wall's steps.
     pub(super) fn nearest_depth(&self, texel: &Texel, distance: f64, [a, b, c]: [DVec3; 3]) -> f32 {
         let face = &self.faces[texel.face];
-        let depth = face
-            .clip_from_world
-            .project_point3(texel.ray.at(distance))
-            .z;
+        let depth = face.depth(texel, distance);
         let normal = (b - a).cross(c - a);
         // In clip space planes are planes, and depth is affine over the map.
         let plane = face.world_from_clip.transpose() * normal.extend(-normal.dot(a));
@@ -126,8 +131,7 @@ impl MapRays {
 
     /// The depth that the map stores for a point at a distance along a texel's ray \[m].
     pub(super) fn stored_depth(&self, texel: &Texel, distance: f64) -> f32 {
-        let clip_from_world = self.faces[texel.face].clip_from_world;
-        self.stored(clip_from_world.project_point3(texel.ray.at(distance)).z)
+        self.stored(self.faces[texel.face].depth(texel, distance))
     }
 
     /// The depth that the map stores where there is no surface.

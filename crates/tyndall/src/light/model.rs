@@ -96,15 +96,18 @@ impl<'a> LightModel<'a> {
                 inner,
                 outer,
                 ..
-            } => one(
-                Shape::Spot {
-                    position: reals(position),
-                    axis: unit(direction),
-                    cos_inner: fade(inner, outer)[0],
-                    cos_outer: fade(inner, outer)[1],
-                },
-                intensity,
-            ),
+            } => {
+                let [cos_inner, cos_outer] = fade(inner, outer);
+                one(
+                    Shape::Spot {
+                        position: reals(position),
+                        axis: unit(direction),
+                        cos_inner,
+                        cos_outer,
+                    },
+                    intensity,
+                )
+            }
             Emitter::Rect {
                 center,
                 edge_x,
