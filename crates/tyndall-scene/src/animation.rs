@@ -1,6 +1,6 @@
 //! Keyframes of nodes' places, as glTF 2.0 has them (section 3.11 and appendix C).
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{DAffine3, DVec3, Quat, Vec3};
 
 /// The movement of one node relative to its parent. A property without a curve stays as it is at rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub struct NodeAnimation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// Translation \[m].
-    pub translation: Vec3,
+    pub translation: DVec3,
     /// Rotation, a unit quaternion.
     pub rotation: Quat,
     /// Scale along the node's own axes.
@@ -121,9 +121,13 @@ impl<T: Animated> Curve<T> {
     }
 }
 
-impl From<Placement> for Affine3A {
+impl From<Placement> for DAffine3 {
     fn from(place: Placement) -> Self {
-        Self::from_scale_rotation_translation(place.scale, place.rotation, place.translation)
+        Self::from_scale_rotation_translation(
+            place.scale.as_dvec3(),
+            place.rotation.as_dquat().normalize(),
+            place.translation,
+        )
     }
 }
 
@@ -135,8 +139,11 @@ impl NodeAnimation {
             curve.and_then(|curve| curve.at(seconds)).unwrap_or(rest)
         }
         let rotation = value(&self.rotation, seconds, self.rest.rotation);
+        let translation = self.translation.as_ref();
         Placement {
-            translation: value(&self.translation, seconds, self.rest.translation),
+            translation: translation
+                .and_then(|curve| curve.at(seconds))
+                .map_or(self.rest.translation, |moved| moved.as_dvec3()),
             // A file's rotations may be zeros.
             rotation: glam::Vec4::from(rotation)
                 .try_normalize()

@@ -1,6 +1,6 @@
 //! A scene flattened: every instance of every mesh as triangles in world space.
 
-use glam::{Affine3A, Mat3A, Vec2, Vec3};
+use glam::{Affine3A, DAffine3, Mat3A, Vec2, Vec3};
 
 use crate::scene::{Primitive, Scene};
 
@@ -107,16 +107,18 @@ impl Geometry {
     }
 }
 
-/// Transforms from the nodes' own spaces to world space, one a node.
+/// Transforms from the nodes' own spaces to world space, one a node. They are chained in double precision, so that nodes far
+/// from the root's origin lose nothing if [`Scene::origin`] is near them.
 pub fn world_from_nodes(scene: &Scene) -> Vec<Affine3A> {
-    let mut world_from_node: Vec<Affine3A> = Vec::with_capacity(scene.nodes.len());
+    let world_from_root = DAffine3::from_translation(-scene.origin);
+    let mut world_from_node: Vec<DAffine3> = Vec::with_capacity(scene.nodes.len());
     for node in &scene.nodes {
         let world_from_parent = node
             .parent
-            .map_or(Affine3A::IDENTITY, |parent| world_from_node[parent]);
+            .map_or(world_from_root, |parent| world_from_node[parent]);
         world_from_node.push(world_from_parent * node.parent_from_local);
     }
-    world_from_node
+    world_from_node.iter().map(DAffine3::as_affine3a).collect()
 }
 
 /// The matrix that keeps normals normal to their surface: the cofactors, which unlike the inverse's transpose exist
@@ -146,7 +148,7 @@ mod tests {
         Node {
             name: String::new(),
             parent,
-            parent_from_local,
+            parent_from_local: parent_from_local.as_daffine3(),
             mesh,
             camera: None,
             light: None,

@@ -1,6 +1,6 @@
 //! A scene as data: nodes, meshes, materials, textures, cameras and lights, from any source.
 
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{DAffine3, DVec3, Vec2, Vec3};
 use tyndall::frame::{Emitter, Projection};
 
 use crate::animation::NodeAnimation;
@@ -10,6 +10,9 @@ use crate::animation::NodeAnimation;
 pub struct Scene {
     /// The name: the file's, or `builtin:...`.
     pub name: String,
+    /// The point of the nodes' space that is the origin of world space: everything made of a scene, in single precision, is
+    /// relative to it. Near the eye it keeps small what is seen, wherever in the nodes' space that is \[m].
+    pub origin: DVec3,
     /// The nodes; a node's parent comes before it.
     pub nodes: Vec<Node>,
     /// The meshes, in their own space.
@@ -41,7 +44,7 @@ pub struct Node {
     /// Index of the parent.
     pub parent: Option<usize>,
     /// The place relative to the parent.
-    pub parent_from_local: Affine3A,
+    pub parent_from_local: DAffine3,
     /// Index into [`Scene::meshes`].
     pub mesh: Option<usize>,
     /// A camera, looking along its own -Z with +Y up. The aspect ratio is in the half extents.

@@ -1,7 +1,7 @@
 //! Scenes and lights made in a line for tests.
 
 use glam::{
-    Affine3A, Vec2, Vec3,
+    DAffine3, Vec2, Vec3,
     camera::rh::{proj::directx, view},
     vec3,
 };
@@ -58,7 +58,7 @@ pub(crate) fn scene(
         nodes: vec![Node {
             name: String::new(),
             parent: None,
-            parent_from_local: Affine3A::IDENTITY,
+            parent_from_local: DAffine3::IDENTITY,
             mesh: Some(0),
             camera: None,
             light: None,

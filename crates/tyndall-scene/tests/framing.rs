@@ -19,7 +19,7 @@ fn node(parent_from_local: Affine3A) -> Node {
     Node {
         name: "node".to_owned(),
         parent: None,
-        parent_from_local,
+        parent_from_local: parent_from_local.as_daffine3(),
         mesh: None,
         camera: None,
         light: None,
@@ -146,6 +146,7 @@ fn cameras_and_lights_stand_where_their_nodes_do() {
         intensity: [5.0; 3],
         inner: 0.1,
         outer: 0.2,
+        radius: 0.0,
     };
     let projection = Projection::Perspective {
         half_extent: [9.0, 0.5],

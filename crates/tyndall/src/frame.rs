@@ -1,6 +1,10 @@
 //! A frame as plain data: the same [`Frame`] drives the GPU and the CPU.
 //!
 //! World space is right-handed; lengths are metres, angles radians, colours linear RGB.
+//!
+//! Its origin is the caller's to choose, and single precision holds what is near it: in a large world, subtract a point near the
+//! eye from all positions (and put it into the matrices of shadow maps) in double precision, before they become a frame. Keep
+//! the point while it is near, for what temporal reuse keeps is relative to it: turn reuse off for the frame that moves it.
 
 pub use crate::phase::Phase;
 use crate::phase::droplets::droplets;
@@ -19,7 +23,8 @@ pub struct Frame {
 /// A camera: eye, orientation, projection and the convention of its depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// World-space position of the eye (orthographic: of the plane that depth is measured from) \[m].
+    /// World-space position of the eye (orthographic: of the plane that depth is measured from) \[m]; within 8192 far planes of
+    /// the origin, see the module's head.
     pub eye: [f32; 3],
     /// World-space viewing direction; need not be of unit length, must not be zero.
     pub forward: [f32; 3],
@@ -140,6 +145,10 @@ pub enum Emitter {
         position: [f32; 3],
         /// Radiant intensity [W/sr].
         intensity: [f32; 3],
+        /// Radius by which the lamp is softened \[m] (>= 0): at distance d its light is as that of a point at hypot(d, radius), so
+        /// that it stays finite at its very place. 0 is a point, taken as a millionth of its distance from the eye or a thousandth
+        /// of the near plane's, whichever is more; see [`light_radius`](crate::light::light_radius).
+        radius: f32,
     },
     /// A point that shines into a cone, with `KHR_lights_punctual`'s smooth edge.
     Spot {
@@ -149,12 +158,15 @@ pub enum Emitter {
         direction: [f32; 3],
         /// Radiant intensity on the axis [W/sr].
         intensity: [f32; 3],
-        /// Angle from the axis where the light begins to fade \[rad] (0 <= inner < outer).
+        /// Angle from the axis where the light begins to fade \[rad] (0 <= inner <= outer).
         inner: f32,
-        /// Angle from the axis where the light ends \[rad] (< pi/2).
+        /// Angle from the axis where the light ends \[rad] (<= pi/2; below it with a texture).
         outer: f32,
+        /// Radius by which the lamp is softened \[m] (>= 0), as a point's.
+        radius: f32,
     },
-    /// A rectangle that shines to one side, along cross(edge_x, edge_y), with a cosine.
+    /// A rectangle that shines to one side, along cross(edge_x, edge_y), with a cosine. Each of its samples stands for a patch of it
+    /// and is softened by as much ([`patch_radius`](crate::light::patch_radius)).
     Rect {
         /// World-space middle of the rectangle \[m].
         center: [f32; 3],
@@ -222,14 +234,15 @@ impl Light {
 /// The projection that a shadow map was rendered with. Its depth is a depth buffer's: clip z / clip w in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ShadowProjection {
-    /// One square or oblong map: a directional light's orthographic or a spot's perspective one.
+    /// One square or oblong map: a directional light's orthographic or a spot's perspective one, which
+    /// gets coarse as the cone widens: beyond some 70 degrees a cube is the better one.
     Single {
         /// World space to the map's clip space, column-major, z in [0, 1], y up.
         clip_from_world: [[f32; 4]; 4],
         /// True where the map holds 1 at its near plane and 0 at its far plane.
         reversed_depth: bool,
     },
-    /// Six square faces round a point light, 90 degrees each, in the order +X, -X, +Y, -Y, +Z, -Z
+    /// Six square faces round a point light or a spot, 90 degrees each, in the order +X, -X, +Y, -Y, +Z, -Z
     /// and with the orientation of WebGPU's and Direct3D's cube textures.
     Cube {
         /// Distance of each face's near plane along its axis \[m] (> 0).
@@ -253,7 +266,7 @@ pub enum TexturePlacement {
         /// World-space edge from the texture's top to its bottom \[m].
         edge_y: [f32; 3],
     },
-    /// Spot light: the texture fills the square round the cone, tan(outer) to each side of the axis.
+    /// Spot light: the texture fills the square round the cone, tan(outer) to each side of the axis: outer < pi/2.
     Cone {
         /// World-space direction that is up in the texture; must not be parallel to the axis.
         up: [f32; 3],

@@ -342,7 +342,7 @@ fn exact_visibility(stage: &Stage, plate: Option<&Plate>, normal: Option<DVec3>)
     if let Emitter::Rect { samples, .. } = &mut light.emitter {
         *samples = 1024;
     }
-    let samples = LightModel::samples(&light, stage.lights[0].texture.as_ref());
+    let samples = LightModel::samples(&light, camera, stage.lights[0].texture.as_ref());
     let optics = Optics::new(&stage.frame.medium);
     let pixel = |(i, depth): (usize, &f32)| {
         let ray = rays.ray(i as u32 % SIZE[0], i as u32 / SIZE[0], *depth);
@@ -576,6 +576,7 @@ fn what_cannot_be_done_is_refused() {
     lamp.frame.lights[0].emitter = Emitter::Point {
         position: [0.0; 3],
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     assert_eq!(
         refusal(&lamp, technique("vsv", &[]), points(64)),

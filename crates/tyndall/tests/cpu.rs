@@ -11,6 +11,7 @@ use tyndall::{
     camera::CameraRays,
     cpu::{self, CpuInputs},
     frame::{Camera, Emitter, Frame, Light, Medium, MediumComponent, Phase, Projection},
+    light::light_radius,
     physics::{
         airlight::{AirlightTable, PointOnRay},
         transmittance::transmittance_integral,
@@ -56,7 +57,12 @@ fn simple(
     (frame, technique.into())
 }
 
-fn render((frame, techniques): &(Frame, TechniqueChoice)) -> Vec<[f32; 4]> {
+fn render(frame: &(Frame, TechniqueChoice)) -> Vec<[f32; 4]> {
+    attempt(frame).expect("a good frame")
+}
+
+/// The picture, or the words of a refusal.
+fn attempt((frame, techniques): &(Frame, TechniqueChoice)) -> Result<Vec<[f32; 4]>, String> {
     let depth = common::depth(true);
     let inputs = CpuInputs {
         size: SIZE,
@@ -65,8 +71,8 @@ fn render((frame, techniques): &(Frame, TechniqueChoice)) -> Vec<[f32; 4]> {
         occluders: None,
     };
     cpu::render(frame, &inputs, techniques, &|_, _| {})
-        .expect("a good frame")
-        .pixels
+        .map(|rendered| rendered.pixels)
+        .map_err(|error| error.to_string())
 }
 
 /// Each pixel's ray, with the depth that `render` uses.
@@ -180,12 +186,14 @@ fn an_unshadowed_lamp_is_the_airlight_integral() {
         let lamp = Emitter::Point {
             position,
             intensity: [1.0; 3],
+            radius: 0.0,
         };
         let frame = simple(medium, lamp, reference());
         for (pixel, ray) in render(&frame).iter().zip(rays(&frame.0.camera)) {
             let light = PointOnRay::new(
                 DVec3::from(position.map(f64::from)) - ray.origin,
                 ray.direction,
+                light_radius(&lamp, &frame.0.camera),
             );
             for channel in 0..3 {
                 let (s, a) = (
@@ -359,4 +367,60 @@ fn incremental_agrees_with_min_max() {
         // Largest measured: 0.0084, a lamp seen straight up; the low rank's own error.
         assert!(error < 0.012, "{}: {error}", stage.name);
     }
+}
+
+#[test]
+fn an_eye_that_single_precision_cannot_hold_is_refused() {
+    let mut frame = simple(
+        MediumComponent {
+            sigma_s: [0.1; 3],
+            sigma_a: [0.0; 3],
+            phase: Phase::Isotropic,
+        },
+        Emitter::Point {
+            position: [0.0; 3],
+            intensity: [1.0; 3],
+            radius: 0.0,
+        },
+        reference(),
+    );
+    // The far plane is 30 m away.
+    for (x, holds) in [(2.4e5, true), (-2.5e5, false)] {
+        frame.0.camera.eye[0] = x;
+        let refused = attempt(&frame).err();
+        assert_eq!(refused.is_none(), holds, "{refused:?}");
+        let names = |text: String| text.contains("camera.eye") && text.contains("relative to");
+        assert!(refused.is_none_or(names));
+    }
+}
+
+#[test]
+fn a_spot_of_a_half_space_has_no_texture() {
+    let mut stage = stages()
+        .into_iter()
+        .find(|stage| stage.name.starts_with("spot through a picture"))
+        .expect("a spot with a texture");
+    let mut refusal = |angle: f32| {
+        if let Emitter::Spot { outer, .. } = &mut stage.frame.lights[0].emitter {
+            *outer = angle;
+        }
+        let lights = stage.cpu_lights();
+        let inputs = CpuInputs {
+            size: SIZE,
+            depth: &stage.depth,
+            lights: &lights,
+            occluders: None,
+        };
+        let techniques = TechniqueChoice::from(technique("ray-march", &[]));
+        let result = cpu::render(&stage.frame, &inputs, &techniques, &|_, _| {});
+        result.err().map(|error| error.to_string())
+    };
+    let half = std::f32::consts::FRAC_PI_2;
+    assert_eq!(refusal(half.next_down()), None);
+    let words = refusal(half).expect("refused");
+    let expected = "`lights[0].emitter.outer` must be below pi/2 rad with a texture, ";
+    assert!(words.starts_with(expected), "{words}");
+    let words = refusal(half.next_up()).expect("refused");
+    let expected = "`lights[0].emitter.outer` must be an angle above 0 and up to pi/2 rad, ";
+    assert!(words.starts_with(expected), "{words}");
 }

@@ -250,8 +250,11 @@ fn bounds_hold_every_shadow() {
                     "{}, {name}, pixel {x} {y}: {front}..{back} m, shadows from {first} to {last}",
                     stage.name
                 );
-                shadows += 1;
-                spare += (back - front - (last - first)) / ray.length;
+                // Volumes do not know of the cone: a hemisphere's are the lamp's, which are counted once.
+                if !stage.name.starts_with("hemisphere") {
+                    shadows += 1;
+                    spare += (back - front - (last - first)) / ray.length;
+                }
             }
         }
     }

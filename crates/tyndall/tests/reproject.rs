@@ -178,10 +178,12 @@ fn lights() -> [Light; 3] {
         intensity: [300.0, 280.0, 250.0],
         inner: 0.5,
         outer: 0.85,
+        radius: 0.0,
     };
     let lamp = Emitter::Point {
         position: above.to_array(),
         intensity: [300.0, 280.0, 250.0],
+        radius: 0.0,
     };
     let single = |map: Mat4| ShadowProjection::Single {
         clip_from_world: map.to_cols_array_2d(),

@@ -48,7 +48,9 @@ pub(super) fn run(poses: usize, bench: &Bench, progress: &mut Progress) -> Resul
         let shot = Shot::load(name.as_ref(), None, &overrides()?).map_err(Failure::input)?;
         shot_frames.push((
             name.to_owned(),
-            LoadedShot::at_rest(&shot, progress)?.frame(0)?,
+            LoadedShot::at_rest(&shot, progress)?
+                .frame(0)?
+                .with_whole_maps(),
         ));
     }
     let box_wall = bench.assets.as_ref().map(|folder| folder.join(BOX_WALL));
@@ -60,7 +62,7 @@ pub(super) fn run(poses: usize, bench: &Bench, progress: &mut Progress) -> Resul
             let shot = Shot::of_text(&file.with_extension("toml"), BOX_WALL_SHOT, &overrides()?);
             let shot_frame =
                 LoadedShot::at_rest(&shot.map_err(Failure::input)?, progress)?.frame(0)?;
-            shot_frames.push((BOX_WALL.to_owned(), shot_frame));
+            shot_frames.push((BOX_WALL.to_owned(), shot_frame.with_whole_maps()));
         }
         None => notes.push(format!("skipped: {BOX_WALL} is not among the assets")),
     }

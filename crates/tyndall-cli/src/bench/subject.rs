@@ -285,6 +285,7 @@ pub(super) fn with_far_spot(shot_frame: &ShotFrame) -> ShotFrame {
             intensity: illuminance.map(|x| x * distance * distance),
             inner: 0.9 * outer,
             outer,
+            radius: 0.0,
         };
         light.shadow = shadow_fit::fit(shot_frame.tracer.geometry(), &light.emitter);
         light.texture = None;

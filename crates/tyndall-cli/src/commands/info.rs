@@ -240,15 +240,17 @@ fn described(emitter: &Emitter) -> String {
         Emitter::Point {
             position,
             intensity,
-        } => format!("point at {position:?}, {intensity:?} W/sr"),
+            radius,
+        } => format!("point at {position:?}, radius {radius} m, {intensity:?} W/sr"),
         Emitter::Spot {
             position,
             direction,
             intensity,
             inner,
             outer,
+            radius,
         } => format!(
-            "spot at {position:?} along {direction:?}, {intensity:?} W/sr, {inner} to {outer} rad"
+            "spot at {position:?} along {direction:?}, radius {radius} m, {intensity:?} W/sr, {inner} to {outer} rad"
         ),
         Emitter::Rect {
             center, radiance, ..

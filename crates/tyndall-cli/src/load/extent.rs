@@ -16,6 +16,7 @@ pub(super) fn swept(
     pose: impl Fn(&mut Scene, u32),
 ) -> Geometry {
     let mut scene = Scene {
+        origin: rest.origin,
         nodes: rest.nodes.clone(),
         animations: rest.animations.clone(),
         ..Scene::default()

@@ -4,6 +4,7 @@ mod extent;
 mod frame;
 mod motion;
 mod offset;
+mod origin;
 mod scene;
 mod shot;
 mod textures;

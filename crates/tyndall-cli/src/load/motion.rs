@@ -18,7 +18,7 @@ use crate::shot::{Animation, FrameRange, LightSpec, Move, MoveTarget, Problem, S
 /// The movements of a shot, and the scene as they left it.
 pub(super) struct Motion {
     keys: Keys,
-    /// Encloses the scene in every frame, and so do the frames' shadow maps: maps that stay in place don't crawl.
+    /// Encloses the scene in every frame, and so do the shadow maps of all that is seen: maps that stay in place don't crawl.
     extent: Geometry,
     /// The scene as the last frame left it.
     posed: Arc<Scene>,

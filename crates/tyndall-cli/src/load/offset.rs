@@ -1,6 +1,6 @@
 //! Offsets of things from their places at rest.
 
-use glam::{Quat, Vec3};
+use glam::{DMat3, Quat, Vec3};
 use tyndall::frame::{Camera, Emitter, Medium, TexturePlacement};
 use tyndall_scene::scene::Node;
 
@@ -16,8 +16,8 @@ pub(super) struct Offset {
 
 pub(super) fn move_node(node: &mut Node, offset: &Offset) {
     let place = &mut node.parent_from_local;
-    place.matrix3 = glam::Mat3A::from_quat(offset.rotation) * place.matrix3;
-    place.translation += glam::Vec3A::from(offset.translation);
+    place.matrix3 = DMat3::from_quat(offset.rotation.as_dquat()) * place.matrix3;
+    place.translation += offset.translation.as_dvec3();
 }
 
 pub(super) fn move_camera(camera: &mut Camera, offset: &Offset) {

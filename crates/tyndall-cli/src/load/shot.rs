@@ -2,23 +2,24 @@
 
 use std::sync::{Arc, LazyLock};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use tyndall::{
     cpu::LightTexture,
-    frame::{Camera, Emitter, Frame, Light, Medium},
+    frame::{Camera, Emitter, Frame, Light, Medium, ShadowProjection},
     techniques::{Technique, TechniqueChoice},
 };
 use tyndall_scene::{
     framing::{self, Framing},
-    geometry::{Bounds, Geometry},
+    geometry::Bounds,
     scene::Scene,
-    shadow_fit,
+    shadow_fit::{self, Seen},
     trace::Tracer,
 };
 
 use super::{
     frame::{LazyTracer, LightExtras, ShotFrame, built},
     motion::Motion,
+    origin::place_origin,
     scene::{at_scene, load_scene},
     textures::ShotTextures,
 };
@@ -54,16 +55,17 @@ impl LoadedShot {
     /// # Errors
     /// [`Failure::Input`] where the scene or a texture can't be loaded, or the shot doesn't fit the scene.
     pub fn at_rest(shot: &Shot, progress: &mut Progress) -> Result<Self, Failure> {
-        let scene = progress
+        let mut scene = progress
             .run(&format!("load {}", shot.scene), |_| load_scene(&shot.scene))
             .map_err(|failure| at_scene(shot, failure))?;
+        place_origin(shot, &mut scene);
         let tracer = progress.run("build BVH", |_| built(Tracer::new(&scene)));
         let framing = needs_framing(shot).then(|| {
             progress.run("frame", |_| {
                 framing::frame_scene(&scene, &tracer, aspect(shot))
             })
         });
-        let lights = lights(shot, framing.as_ref()).map_err(Failure::input)?;
+        let lights = lights(shot, framing.as_ref(), scene.origin).map_err(Failure::input)?;
         Ok(Self {
             shot: shot.clone(),
             scene: Arc::new(scene),
@@ -124,9 +126,14 @@ impl LoadedShot {
                 &mut parts.medium,
             );
         }
+        let tracer = self.tracer_of(&scene);
+        let lights = parts.lights.iter().map(|spec| Light {
+            emitter: spec.emitter,
+            shadow: self.shadow(&spec.emitter, &parts, &tracer),
+            texture: spec.texture.as_ref().map(|texture| texture.placement),
+        });
+        let lights = lights.collect();
         let extras = parts.lights.iter().zip(textures);
-        let extent = self.motion.as_ref().map(Motion::extent);
-        let extent = extent.unwrap_or_else(|| self.tracer.geometry());
         Ok(ShotFrame {
             lights: extras
                 .map(|(light, texture)| LightExtras {
@@ -136,18 +143,36 @@ impl LoadedShot {
                 .collect(),
             frame: Frame {
                 camera: parts.camera,
-                lights: parts
-                    .lights
-                    .iter()
-                    .map(|spec| light(spec, extent))
-                    .collect(),
+                lights,
                 medium: parts.medium,
             },
             techniques: techniques(self.shot.technique.clone(), &parts.lights),
-            tracer: self.tracer_of(&scene),
+            tracer,
             scene,
             size: self.shot.size,
         })
+    }
+
+    /// The projection of a light's shadow map: round the scene in all frames, or round what is seen in this one, which
+    /// alone needs the tracer.
+    fn shadow(
+        &self,
+        emitter: &Emitter,
+        parts: &Parts,
+        tracer: &LazyTracer,
+    ) -> Option<ShadowProjection> {
+        let extent = self.motion.as_ref().map(Motion::extent);
+        let extent = extent.unwrap_or_else(|| self.tracer.geometry());
+        if !matches!(emitter, Emitter::Directional { .. }) {
+            return shadow_fit::fit(extent, emitter);
+        }
+        let seen = Seen {
+            tracer,
+            camera: &parts.camera,
+            medium: &parts.medium,
+            size: self.shot.size,
+        };
+        shadow_fit::fit_seen(extent, emitter, &seen)
     }
 
     /// The tracer of a scene whose nodes may have moved.
@@ -177,11 +202,12 @@ impl LoadedShot {
         let cameras = SceneCameras {
             named: &cameras,
             framed: framing.as_ref().map(|framing| framing.camera),
+            origin: scene.origin,
             farthest: &|eye| bounds.map_or(0.0, |bounds| farthest(&bounds, eye.into())),
         };
         Ok(Parts {
             camera: shot.camera.resolve(&cameras, aspect)?,
-            lights: lights(shot, framing.as_ref())?,
+            lights: lights(shot, framing.as_ref(), scene.origin)?,
             medium: medium(shot, framing.as_ref())?,
         })
     }
@@ -223,12 +249,19 @@ fn needs_framing(shot: &Shot) -> bool {
     shot.camera.base == CameraBase::Scene || shot.lights.is_none() || shot.medium.is_none()
 }
 
-fn lights(shot: &Shot, framing: Option<&Framing>) -> Result<Vec<LightSpec>, ShotError> {
-    match (&shot.lights, framing) {
-        (Some(lights), _) => Ok(lights.clone()),
-        (None, Some(framing)) => shot.scene_lights(&framing.lights),
-        (None, None) => Ok(Vec::new()),
-    }
+/// The lights, relative to `origin`.
+fn lights(
+    shot: &Shot,
+    framing: Option<&Framing>,
+    origin: DVec3,
+) -> Result<Vec<LightSpec>, ShotError> {
+    let lights = match (&shot.lights, framing) {
+        (Some(lights), _) => lights.clone(),
+        (None, Some(framing)) => shot.scene_lights(&framing.lights, origin)?,
+        (None, None) => Vec::new(),
+    };
+    let lights = lights.into_iter();
+    Ok(lights.map(|light| light.relative_to(origin)).collect())
 }
 
 fn medium(shot: &Shot, framing: Option<&Framing>) -> Result<Medium, ShotError> {
@@ -246,14 +279,6 @@ fn farthest(bounds: &Bounds, eye: Vec3) -> f32 {
         .abs()
         .max((bounds.max - eye).abs())
         .length()
-}
-
-fn light(spec: &LightSpec, extent: &Geometry) -> Light {
-    Light {
-        emitter: spec.emitter,
-        shadow: shadow_fit::fit(extent, &spec.emitter),
-        texture: spec.texture.as_ref().map(|texture| texture.placement),
-    }
 }
 
 fn is_still(scene: &Scene, rest: &Scene) -> bool {

@@ -125,6 +125,32 @@ fn nodes_move_and_frames_do_not_depend_on_each_other() {
     assert_eq!(top(&loaded(&text).unwrap().frame(2).unwrap()), top(&third));
 }
 
+/// A sun's map follows the camera, and is that of its frame alone.
+#[test]
+fn a_sun_s_map_follows_the_camera() {
+    let (sun, spot) = (
+        "type = \"directional\"\ndirection = [1, -1, 0.2]\nilluminance = [1, 1, 1]\n",
+        SHOT.find("type = \"spot\"").unwrap()..SHOT.find("[medium]").unwrap(),
+    );
+    let mut text = SHOT.replace("builtin:slats", "builtin:forest");
+    let from = text.find("type = \"spot\"").unwrap();
+    text.replace_range(from..from + spot.len(), sun);
+    let (head, _) = text.split_once("[animation]").unwrap();
+    let text = format!(
+        "{head}[animation]\nfps = 10\n[[animation.move]]\nnode = \"camera\"\nrotate_deg = [[0, 0, 0], [0, 170, 0]]\n"
+    );
+    let lights = |loaded: &mut LoadedShot, frame| loaded.frame(frame).unwrap().frame.lights;
+    let mut forwards = loaded(&text).unwrap();
+    let film: Vec<_> = (0..5).map(|frame| lights(&mut forwards, frame)).collect();
+    assert_ne!(film[0], film[4]);
+    for frame in [4, 1, 3] {
+        let alone = lights(&mut loaded(&text).unwrap(), frame);
+        assert_eq!(alone, film[frame as usize], "{frame}");
+    }
+    let whole = loaded(&text).unwrap().frame(0).unwrap().with_whole_maps();
+    assert_ne!(whole.frame.lights, film[0]);
+}
+
 #[test]
 fn what_is_not_there_cannot_be_moved() {
     for (from, to, words) in [

@@ -19,7 +19,7 @@ impl Buffers {
     pub(crate) fn trace(shot_frame: &ShotFrame, progress: &mut Progress) -> Self {
         Self {
             depth: progress.run("trace depth", |report| depth(shot_frame, report)),
-            lights: LightMaps::trace_all(shot_frame, Needs::IN_SCATTER, progress),
+            lights: LightMaps::trace_all(shot_frame, Needs::IN_SCATTER, |_| true, progress),
         }
     }
 }
@@ -40,15 +40,17 @@ pub(crate) struct LightMaps {
 }
 
 impl LightMaps {
+    /// The maps of the lights whose map is read.
     pub(super) fn trace_all(
         shot_frame: &ShotFrame,
         needs: Needs,
+        is_read: impl Fn(usize) -> bool,
         progress: &mut Progress,
     ) -> Vec<Self> {
         let lights = 0..shot_frame.lights.len();
         lights
             .map(|index| {
-                if needs.shadow_maps {
+                if needs.shadow_maps && is_read(index) {
                     Self::trace(shot_frame, index, needs, progress)
                 } else {
                     Self::default()

@@ -9,7 +9,7 @@ use tyndall_scene::shading::shade;
 use super::{
     buffers::LightMaps,
     layers::{Rendered, depth_layer, distances, rgb, transmittances},
-    needs::Needs,
+    needs::{Needs, is_traced},
 };
 use crate::{
     failure::Failure, layer::Layer, load::ShotFrame, picture::Picture, progress::Progress,
@@ -25,7 +25,9 @@ pub(super) fn render(
     let g_buffer = progress.run("trace G-buffer", |report| {
         shot_frame.tracer.g_buffer(camera, size, report)
     });
-    let maps = LightMaps::trace_all(shot_frame, needs, progress);
+    let techniques = shot_frame.techniques_on(Backends::Cpu);
+    let is_read = |light: usize| !is_traced(&techniques[light]);
+    let maps = LightMaps::trace_all(shot_frame, needs, is_read, progress);
     let lights = light_inputs(shot_frame, &maps);
     let in_scatter = if needs.in_scatter {
         let name = format!("in-scatter by {}", names(shot_frame));

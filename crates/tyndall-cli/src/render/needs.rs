@@ -38,8 +38,8 @@ impl TechniqueInputs {
     }
 }
 
-/// Whether a technique takes visibility from the scene itself.
-fn is_traced(technique: &Technique) -> bool {
+/// Whether a technique takes visibility from the scene itself; surfaces do then, too.
+pub(super) fn is_traced(technique: &Technique) -> bool {
     matches!(
         technique,
         Technique::Reference(reference::Params {
@@ -90,8 +90,8 @@ impl Needs {
             in_scatter,
             surface,
             surface_shadows,
-            shadow_maps: surface || (in_scatter && inputs.shadow_maps),
-            glass: surface || (in_scatter && inputs.shadow_maps && inputs.glass),
+            shadow_maps: (surface || in_scatter) && inputs.shadow_maps,
+            glass: inputs.shadow_maps && (surface || (in_scatter && inputs.glass)),
             points: in_scatter && inputs.points,
         }
     }
@@ -137,8 +137,8 @@ mod tests {
                 &[Layer::Final],
                 &[&traced],
                 Needs {
-                    in_scatter: true,
-                    ..surface
+                    surface: true,
+                    ..in_scatter
                 },
             ),
             (&[Layer::Surface, Layer::Depth], &[&march], surface),

@@ -1,6 +1,6 @@
 //! `[camera]`: where the picture is taken from.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use tyndall::frame::{Camera, Projection};
 
 use super::{
@@ -13,10 +13,10 @@ use super::{
 pub struct CameraSpec {
     /// Source of everything that is left out.
     pub base: CameraBase,
-    /// World-space position of the eye \[m].
-    pub eye: Option<[f32; 3]>,
-    /// World-space point that the camera looks at \[m].
-    pub target: Option<[f32; 3]>,
+    /// Position of the eye \[m].
+    pub eye: Option<DVec3>,
+    /// Point that the camera looks at \[m].
+    pub target: Option<DVec3>,
     /// World-space direction that is up in the picture.
     pub up: Option<[f32; 3]>,
     /// Vertical field of view \[rad].
@@ -46,6 +46,8 @@ pub(crate) struct SceneCameras<'a> {
     pub(crate) named: &'a [(String, Camera)],
     /// The scene's first camera, or one that frames the scene.
     pub(crate) framed: Option<Camera>,
+    /// The point of the shot's and the scene's space that the cameras are relative to \[m].
+    pub(crate) origin: DVec3,
     /// Distance from a point to the farthest corner of the scene \[m].
     pub(crate) farthest: &'a dyn Fn([f32; 3]) -> f32,
 }
@@ -105,7 +107,7 @@ impl CameraSpec {
         let (Some(eye), Some(target)) = (self.eye, self.target) else {
             return Ok(());
         };
-        let view = Vec3::from(target) - Vec3::from(eye);
+        let view = (target - eye).as_vec3();
         if view.try_normalize().is_none() {
             let target = section.require("target", "")?;
             return Err(target.unexpected("a point apart from camera.eye"));
@@ -139,20 +141,21 @@ impl CameraSpec {
             CameraBase::Scene => scene.framed.unwrap_or_else(|| self.look_at(scene, aspect)),
             CameraBase::Named(name) => find(scene.named, name).map_err(|p| self.error(p))?,
         };
-        self.change_pose(&mut camera);
+        self.change_pose(&mut camera, scene.origin);
         self.change_projection(&mut camera.projection, aspect)?;
         self.check(&camera)?;
         Ok(camera)
     }
 
     fn look_at(&self, scene: &SceneCameras<'_>, aspect: f32) -> Camera {
-        let eye = self.eye.unwrap_or_default();
+        let point = |p: Option<DVec3>| relative(p.unwrap_or_default(), scene.origin);
+        let eye = point(self.eye);
         let far = self
             .far
             .unwrap_or_else(|| (scene.farthest)(eye).max(2.0 * self.near.unwrap_or(0.5)));
         Camera::perspective(
             eye,
-            self.target.unwrap_or_default(),
+            point(self.target),
             [0.0, 1.0, 0.0],
             DEFAULT_YFOV_DEG.to_radians(),
             aspect,
@@ -161,12 +164,13 @@ impl CameraSpec {
         )
     }
 
-    fn change_pose(&self, camera: &mut Camera) {
+    fn change_pose(&self, camera: &mut Camera, origin: DVec3) {
         if let Some(eye) = self.eye {
-            camera.eye = eye;
+            camera.eye = relative(eye, origin);
         }
         if let Some(target) = self.target {
-            camera.forward = (Vec3::from(target) - Vec3::from(camera.eye)).into();
+            let target = Vec3::from(relative(target, origin));
+            camera.forward = (target - Vec3::from(camera.eye)).into();
         }
         match self.up {
             Some(up) => camera.up = up,
@@ -237,6 +241,11 @@ impl CameraSpec {
     }
 }
 
+/// A position relative to `origin`, rounded once.
+pub(super) fn relative(position: DVec3, origin: DVec3) -> [f32; 3] {
+    (position - origin).as_vec3().into()
+}
+
 fn is_upright(view: Vec3, up: [f32; 3]) -> bool {
     let sine = view
         .normalize_or_zero()
@@ -256,7 +265,7 @@ fn find(cameras: &[(String, Camera)], name: &str) -> Result<Camera, Problem> {
         })
 }
 
-fn point(section: &Section<'_>, key: &str, required: bool) -> Result<Option<[f32; 3]>, ShotError> {
+fn point(section: &Section<'_>, key: &str, required: bool) -> Result<Option<DVec3>, ShotError> {
     if required || section.get(key).is_some() {
         section.point(key).map(Some)
     } else {

@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use glam::DVec3;
 use tyndall::{
     frame::{Emitter, LightKind, Medium},
     techniques::{TABLE, Technique, TechniqueInfo},
@@ -190,9 +191,13 @@ impl Shot {
         }
     }
 
-    /// The lights of a shot that leaves them to the scene, with the changes of `--set`.
-    pub(crate) fn scene_lights(&self, emitters: &[Emitter]) -> Result<Vec<LightSpec>, ShotError> {
-        let root = self.changed("light", light::to_tree(emitters))?;
+    /// The lights of a shot that leaves them to the scene, with the changes of `--set`. `emitters` are relative to `origin` \[m].
+    pub(crate) fn scene_lights(
+        &self,
+        emitters: &[Emitter],
+        origin: DVec3,
+    ) -> Result<Vec<LightSpec>, ShotError> {
+        let root = self.changed("light", light::to_tree(emitters, origin))?;
         let field = Section::root(&self.file, &root).require("light", "lights")?;
         light::read_all(&field, folder(&self.file))
     }

@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use tyndall::{
     frame::{Emitter, LightKind, TexturePlacement},
     techniques::Technique,
@@ -24,6 +24,8 @@ use super::{
 pub struct LightSpec {
     /// Kind, place and strength.
     pub emitter: Emitter,
+    /// The position of the emitter, or of a directional light's texture, before it is rounded \[m].
+    pub position: DVec3,
     /// Texels of a side of its shadow map, of a face of its cube map, or of a map of each of a rectangle's samples.
     pub shadow_map: u32,
     /// The texture it shines through.
@@ -82,6 +84,7 @@ fn read(field: &Field<'_>, folder: &Path) -> Result<LightSpec, ShotError> {
     };
     Ok(LightSpec {
         emitter,
+        position: precise_position(&section)?,
         shadow_map: section.whole_or("shadow_map", default_map, map_range(&emitter))?,
         texture: section
             .get("texture")
@@ -92,6 +95,38 @@ fn read(field: &Field<'_>, folder: &Path) -> Result<LightSpec, ShotError> {
             .map(|field| technique::read_own(&field, LightKind::of(&emitter)))
             .transpose()?,
     })
+}
+
+/// The one position that a light of any kind has.
+fn precise_position(section: &Section<'_>) -> Result<DVec3, ShotError> {
+    for key in ["position", "center"] {
+        if section.get(key).is_some() {
+            return section.point(key);
+        }
+    }
+    match section.get("texture") {
+        Some(texture) if texture.section()?.get("center").is_some() => {
+            texture.section()?.point("center")
+        }
+        _ => Ok(DVec3::ZERO),
+    }
+}
+
+impl LightSpec {
+    /// The light with its position relative to `origin` [m], rounded once.
+    pub(crate) fn relative_to(mut self, origin: DVec3) -> Self {
+        let place = (self.position - origin).as_vec3().into();
+        match &mut self.emitter {
+            Emitter::Point { position, .. } | Emitter::Spot { position, .. } => *position = place,
+            Emitter::Rect { center, .. } => *center = place,
+            Emitter::Directional { .. } => {}
+        }
+        let texture = self.texture.as_mut().map(|texture| &mut texture.placement);
+        if let Some(TexturePlacement::Parallelogram { center, .. }) = texture {
+            *center = place;
+        }
+        self
+    }
 }
 
 /// Texels that a side of the light's shadow map, or of each of a rectangle's samples, may have.
@@ -117,32 +152,46 @@ fn directional(section: &Section<'_>) -> Result<Emitter, ShotError> {
 }
 
 fn point(section: &Section<'_>) -> Result<Emitter, ShotError> {
-    only(section, &["position", "intensity"])?;
+    only(section, &["position", "intensity", "radius"])?;
     Ok(Emitter::Point {
-        position: section.point("position")?,
+        position: section.point("position")?.as_vec3().into(),
         intensity: section.color("intensity")?,
+        radius: lamp_radius(section)?,
     })
 }
 
 fn spot(section: &Section<'_>) -> Result<Emitter, ShotError> {
-    only(
-        section,
-        &["position", "direction", "intensity", "inner", "outer"],
-    )?;
-    let expected = "an angle above 0 and below pi/2 radians";
+    let own = [
+        "position",
+        "direction",
+        "intensity",
+        "inner",
+        "outer",
+        "radius",
+    ];
+    only(section, &own)?;
+    let expected = "an angle above 0 and up to pi/2 radians";
     let outer = section
         .require("outer", expected)?
-        .real(expected, |x| x > 0.0 && x < FRAC_PI_2)?;
-    let expected = format!("an angle from 0 to below outer = {outer} radians");
+        .real(expected, |x| x > 0.0 && x <= FRAC_PI_2)?;
+    let expected = format!("an angle from 0 to outer = {outer} radians");
     let inner = section
         .require("inner", &expected)?
-        .real(&expected, |x| x >= 0.0 && x < outer)?;
+        .real(&expected, |x| x >= 0.0 && x <= outer)?;
     Ok(Emitter::Spot {
-        position: section.point("position")?,
+        position: section.point("position")?.as_vec3().into(),
         direction: section.direction("direction")?,
         intensity: section.color("intensity")?,
         inner,
         outer,
+        radius: lamp_radius(section)?,
+    })
+}
+
+/// The radius of a point or spot light \[m].
+fn lamp_radius(section: &Section<'_>) -> Result<f32, ShotError> {
+    section.get("radius").map_or(Ok(0.0), |field| {
+        field.real("a radius of at least 0 metres", |x| x >= 0.0)
     })
 }
 
@@ -150,7 +199,7 @@ fn rect(section: &Section<'_>) -> Result<Emitter, ShotError> {
     only(section, &["center", "edge_x", "edge_y", "radiance", "vpls"])?;
     let (edge_x, edge_y) = edges(section)?;
     Ok(Emitter::Rect {
-        center: section.point("center")?,
+        center: section.point("center")?.as_vec3().into(),
         edge_x,
         edge_y,
         radiance: section.color("radiance")?,
@@ -213,7 +262,7 @@ fn parallelogram(section: &Section<'_>, light: [f32; 3]) -> Result<TexturePlacem
         return Err(field.unexpected("a parallelogram that the light doesn't graze"));
     }
     Ok(TexturePlacement::Parallelogram {
-        center: section.point("center")?,
+        center: section.point("center")?.as_vec3().into(),
         edge_x,
         edge_y,
     })
@@ -241,17 +290,18 @@ fn turned_about(
     Ok(direction)
 }
 
-/// Lights of a scene as a shot would write them, for `--set` to change.
-pub(super) fn to_tree(emitters: &[Emitter]) -> Entry {
+/// Lights of a scene as a shot would write them, for `--set` to change; their positions are relative to `origin`.
+pub(super) fn to_tree(emitters: &[Emitter], origin: DVec3) -> Entry {
     Entry::of_scene(Value::List(
         emitters
             .iter()
-            .map(|emitter| Entry::of_scene(emitter_value(emitter)))
+            .map(|emitter| Entry::of_scene(emitter_value(emitter, origin)))
             .collect(),
     ))
 }
 
-fn emitter_value(emitter: &Emitter) -> Value {
+fn emitter_value(emitter: &Emitter, origin: DVec3) -> Value {
+    let point = |p: [f32; 3]| Value::from(origin + Vec3::from(p).as_dvec3());
     match *emitter {
         Emitter::Directional {
             direction,
@@ -264,10 +314,12 @@ fn emitter_value(emitter: &Emitter) -> Value {
         Emitter::Point {
             position,
             intensity,
+            radius,
         } => Value::scene_table([
             ("type", "point".into()),
-            ("position", position.into()),
+            ("position", point(position)),
             ("intensity", intensity.into()),
+            ("radius", radius.into()),
         ]),
         Emitter::Spot {
             position,
@@ -275,13 +327,15 @@ fn emitter_value(emitter: &Emitter) -> Value {
             intensity,
             inner,
             outer,
+            radius,
         } => Value::scene_table([
             ("type", "spot".into()),
-            ("position", position.into()),
+            ("position", point(position)),
             ("direction", direction.into()),
             ("intensity", intensity.into()),
             ("inner", inner.into()),
             ("outer", outer.into()),
+            ("radius", radius.into()),
         ]),
         Emitter::Rect {
             center,
@@ -291,7 +345,7 @@ fn emitter_value(emitter: &Emitter) -> Value {
             samples,
         } => Value::scene_table([
             ("type", "rect".into()),
-            ("center", center.into()),
+            ("center", point(center)),
             ("edge_x", edge_x.into()),
             ("edge_y", edge_y.into()),
             ("radiance", radiance.into()),

@@ -2,6 +2,8 @@
 
 use std::{fmt, path::Path};
 
+use glam::DVec3;
+
 use super::{
     error::{Location, Origin, Problem, ShotError, one_of, similar},
     tree::{Entry, Place, Table, Value},
@@ -101,9 +103,13 @@ impl<'a> Section<'a> {
         self.require(key, expected)?.vec3(expected, accept)
     }
 
-    /// Three finite numbers.
-    pub(super) fn point(&self, key: &str) -> Result<[f32; 3], ShotError> {
-        self.vec3(key, "three finite numbers", |_| true)
+    /// Three finite numbers, a position in double precision.
+    pub(super) fn point(&self, key: &str) -> Result<DVec3, ShotError> {
+        let field = self.require(key, POINT)?;
+        field.vec3(POINT, |_| true)?;
+        Ok(DVec3::from(
+            field.array::<3>(POINT)?.map(|item| item.precise()),
+        ))
     }
 
     /// Three finite numbers that are not all zero.
@@ -128,6 +134,7 @@ impl<'a> Section<'a> {
     }
 }
 
+const POINT: &str = "three finite numbers";
 const DIRECTION: &str = "three numbers that are not all zero";
 
 impl<'a> Field<'a> {
@@ -181,6 +188,15 @@ impl<'a> Field<'a> {
             Ok(number)
         } else {
             Err(self.unexpected(expected))
+        }
+    }
+
+    /// The number in double precision; 0 where there is none.
+    fn precise(&self) -> f64 {
+        match self.entry.value {
+            Value::Integer(number) => number as f64,
+            Value::Real(number) => number,
+            _ => 0.0,
         }
     }
 

@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use glam::DVec3;
 use tyndall::{
     frame::{Camera, Emitter, Medium, MediumComponent, Phase, Projection, TexturePlacement},
     techniques::{Technique, Value},
@@ -78,7 +79,7 @@ fn a_whole_shot_is_read() {
     assert!(matches!(&shot.scene, SceneSource::File(path) if path.ends_with("a.glb")));
     assert_eq!(shot.name(), "shot");
     assert_eq!(shot.camera.base, CameraBase::Shot);
-    assert_eq!(shot.camera.eye, Some([0.0, 1.7, 9.0]));
+    assert_eq!(shot.camera.eye, Some(DVec3::new(0.0, 1.7, 9.0)));
     assert_eq!(shot.camera.up, None);
     let lights = shot.lights.unwrap();
     assert_eq!(lights[0].shadow_map, 2048);
@@ -91,6 +92,7 @@ fn a_whole_shot_is_read() {
             intensity: [4.0, 5.0, 6.0],
             inner: 0.2,
             outer: 0.4,
+            radius: 0.0,
         }
     );
     let texture = lights[1].texture.as_ref().unwrap();
@@ -358,7 +360,7 @@ fn every_mistake_names_line_key_expected_and_found() {
         (
             "\"directional\"",
             "\"point\"",
-            "shot.toml:11: light.0.direction: no such key: expected type, shadow_map, texture, technique, position or intensity",
+            "shot.toml:11: light.0.direction: no such key: expected type, shadow_map, texture, technique, position, intensity or radius",
         ),
         (
             "direction = [-0.5, -1.0, -0.2]",
@@ -382,13 +384,18 @@ fn every_mistake_names_line_key_expected_and_found() {
         ),
         (
             "inner = 0.2",
-            "inner = 0.4",
-            "shot.toml:18: light.1.inner: expected an angle from 0 to below outer = 0.4 radians, found 0.4",
+            "inner = 0.5",
+            "shot.toml:18: light.1.inner: expected an angle from 0 to outer = 0.4 radians, found 0.5",
+        ),
+        (
+            "inner = 0.2",
+            "inner = 0.2\nradius = -1.0",
+            "shot.toml:19: light.1.radius: expected a radius of at least 0 metres, found -1.0",
         ),
         (
             "outer = 0.4",
             "outer = 1.6",
-            "shot.toml:19: light.1.outer: expected an angle above 0 and below pi/2 radians, found 1.6",
+            "shot.toml:19: light.1.outer: expected an angle above 0 and up to pi/2 radians, found 1.6",
         ),
         (
             "shadow_map = 512",
@@ -693,8 +700,9 @@ fn lights_of_the_scene_may_have_their_own_technique() {
     let lamp = Emitter::Point {
         position: [1.0; 3],
         intensity: [5.0; 3],
+        radius: 0.0,
     };
-    let lights = shot.scene_lights(&[lamp, lamp]).unwrap();
+    let lights = shot.scene_lights(&[lamp, lamp], DVec3::ZERO).unwrap();
     assert_eq!(lights[0].technique, None);
     assert_eq!(lights[1].technique, Technique::from_name("vsv"));
     let table = scene_shot(&["light.0.technique={name='hybrid'}"]);
@@ -730,14 +738,18 @@ fn overrides_change_what_the_scene_gives() {
     let lamp = Emitter::Point {
         position: [1.0; 3],
         intensity: [5.0; 3],
+        radius: 0.0,
     };
-    let lights = shot.scene_lights(&[sun, lamp]).unwrap();
+    let lights = shot.scene_lights(&[sun, lamp], DVec3::ZERO).unwrap();
     assert!(
         matches!(lights[0].emitter, Emitter::Directional { illuminance, direction }
         if illuminance == [1.0, 2.0, 3.0] && direction == [0.0, -1.0, 0.0])
     );
     assert_eq!((lights[1].emitter, lights[1].shadow_map), (lamp, 64));
-    let error = shot.scene_lights(&[sun]).unwrap_err().to_string();
+    let error = shot
+        .scene_lights(&[sun], DVec3::ZERO)
+        .unwrap_err()
+        .to_string();
     assert_eq!(
         error,
         "--set light.1.shadow_map: expected index 0 of a list of one, found 1"
@@ -763,6 +775,7 @@ fn every_kind_of_light_and_medium_survives_being_written_as_a_shot() {
             intensity: [1.5; 3],
             inner: 0.0,
             outer: 0.7,
+            radius: 0.0,
         },
         Emitter::Rect {
             center: [0.0; 3],
@@ -773,7 +786,7 @@ fn every_kind_of_light_and_medium_survives_being_written_as_a_shot() {
         },
     ];
     let shot = scene_shot(&[]);
-    let lights = shot.scene_lights(&emitters).unwrap();
+    let lights = shot.scene_lights(&emitters, DVec3::ZERO).unwrap();
     assert!(lights.iter().map(|light| light.emitter).eq(emitters));
     let component = |phase| MediumComponent {
         sigma_s: [0.1, 0.2, 0.3],
@@ -789,6 +802,7 @@ fn every_kind_of_light_and_medium_survives_being_written_as_a_shot() {
 /// A scene with one camera that looks along -z from the origin.
 fn resolve(shot: &Shot, base: Camera) -> Result<Camera, String> {
     let scene = SceneCameras {
+        origin: DVec3::ZERO,
         named: &[("main".to_owned(), base)],
         framed: Some(base),
         farthest: &|_| 80.0,

@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt};
 
+use glam::DVec3;
 use toml_edit::{Document, Item, TableLike, TomlError};
 
 /// A table's entries by key.
@@ -173,6 +174,13 @@ impl From<f32> for Value {
 impl From<[f32; 3]> for Value {
     fn from(numbers: [f32; 3]) -> Self {
         Self::List(numbers.map(|x| Entry::of_scene(x.into())).to_vec())
+    }
+}
+
+impl From<DVec3> for Value {
+    fn from(position: DVec3) -> Self {
+        let numbers = position.to_array().map(Self::Real);
+        Self::List(numbers.map(Entry::of_scene).to_vec())
     }
 }
 

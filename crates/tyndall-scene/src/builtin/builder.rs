@@ -97,7 +97,7 @@ fn place(name: &str, parent_from_local: Affine3A) -> Node {
     Node {
         name: name.to_owned(),
         parent: None,
-        parent_from_local,
+        parent_from_local: parent_from_local.as_daffine3(),
         mesh: None,
         camera: None,
         light: None,

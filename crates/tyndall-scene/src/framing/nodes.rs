@@ -50,7 +50,7 @@ fn placed_camera(
     })
 }
 
-/// Scale changes a light's position and a rectangle's size, not its strength.
+/// Scale changes a light's position and a rectangle's size, neither its strength nor a lamp's radius.
 fn placed_light(light: Emitter, world_from_node: &Affine3A) -> Option<Emitter> {
     let moved = |p: [f32; 3]| world_from_node.transform_point3(p.into()).to_array();
     let stretched = |v: [f32; 3]| world_from_node.transform_vector3(v.into()).to_array();
@@ -65,9 +65,11 @@ fn placed_light(light: Emitter, world_from_node: &Affine3A) -> Option<Emitter> {
         Emitter::Point {
             position,
             intensity,
+            radius,
         } => Emitter::Point {
             position: moved(position),
             intensity,
+            radius,
         },
         Emitter::Spot {
             position,
@@ -75,12 +77,14 @@ fn placed_light(light: Emitter, world_from_node: &Affine3A) -> Option<Emitter> {
             intensity,
             inner,
             outer,
+            radius,
         } => Emitter::Spot {
             position: moved(position),
             direction: turned(direction, world_from_node)?,
             intensity,
             inner,
             outer,
+            radius,
         },
         Emitter::Rect {
             center,

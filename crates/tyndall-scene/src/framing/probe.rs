@@ -130,6 +130,7 @@ impl Probe {
         Emitter::Point {
             position: ray.at(reach).as_vec3().to_array(),
             intensity: illuminance.map(|e| e * (reach * reach) as f32),
+            radius: 0.0,
         }
     }
 }
@@ -160,6 +161,7 @@ impl Arrival {
             Emitter::Point {
                 position,
                 intensity,
+                ..
             } => (vector(position) - point, strength(intensity)),
             Emitter::Spot {
                 position,

@@ -77,7 +77,7 @@ impl SceneRenderer {
             .record(&self.scene, encoder, targets, camera, timer);
     }
 
-    /// Records the light's shadow map: alpha-tested where surfaces are masked, both sides of all of them, without bias.
+    /// Records the light's shadow map: alpha-tested where surfaces are masked, both sides of all of them.
     ///
     /// # Panics
     /// If `target` was made for another kind of projection.

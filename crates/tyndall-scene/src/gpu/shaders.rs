@@ -110,13 +110,18 @@ mod tests {
                     sky_horizon,
                     ambient_tilt,
                     sky_zenith,
-                    normal_offset
+                    normal_offset,
+                    normal_offset_grazing
                 }),
             ),
             (
                 &light,
                 "ShadeLight",
-                rust_layout!(ShadeLightUniform { edge_x, edge_y }),
+                rust_layout!(ShadeLightUniform {
+                    edge_x,
+                    patch_radius,
+                    edge_y
+                }),
             ),
         ] {
             assert_eq!(shader.struct_layout(name), Ok(expected), "{name}");

@@ -1,6 +1,4 @@
-//! Shadow maps: the depth of the first opaque surface seen from a light.
-//!
-//! The rasteriser adds no bias: volumes need none, and surfaces get theirs where they are lit.
+//! Shadow maps: the depth of the first opaque surface seen from a light, as [`shadow_fit`](crate::shadow_fit) says.
 
 use tyndall::{
     frame::{Emitter, ShadowProjection},
@@ -33,8 +31,11 @@ impl ShadowMapPipelines {
                     label,
                     layout,
                     module: &module,
-                    fragment,
-                    constants: &[],
+                    fragment: Some(fragment),
+                    constants: &[(
+                        "SHADOW_MAP_TOWARDS_LIGHT",
+                        if reversed_depth { 1.0 } else { -1.0 },
+                    )],
                     targets: &[],
                     reversed_depth,
                     writes_depth: true,
@@ -43,12 +44,8 @@ impl ShadowMapPipelines {
             })
         };
         Self {
-            opaque: pipeline("shadow map opaque", &opaque, None),
-            masked: pipeline(
-                "shadow map masked",
-                &masked,
-                Some("shadow_map_masked_fragment"),
-            ),
+            opaque: pipeline("shadow map opaque", &opaque, "shadow_map_opaque_fragment"),
+            masked: pipeline("shadow map masked", &masked, "shadow_map_masked_fragment"),
         }
     }
 

@@ -1,11 +1,15 @@
 //! The uniform blocks of surface shading, member by member as in `shade_surface.wesl` and `shade_light.wesl`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
-use tyndall::frame::{Emitter, Frame, Light};
+use glam::{DVec3, Vec3};
+use tyndall::{
+    frame::{Emitter, Frame, Light},
+    light::patch_radius,
+};
 
 use crate::shading::{
-    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_TEXELS, SKY_HORIZON, SKY_ZENITH, sun_illuminance,
+    AMBIENT, AMBIENT_TILT, NORMAL_OFFSET_GRAZING_TEXELS, NORMAL_OFFSET_TEXELS, RECT_SAMPLES,
+    SKY_HORIZON, SKY_ZENITH, sun_illuminance,
 };
 
 /// `Shade`.
@@ -18,6 +22,8 @@ pub(super) struct ShadeUniform {
     pub(super) ambient_tilt: f32,
     pub(super) sky_zenith: [f32; 3],
     pub(super) normal_offset: f32,
+    pub(super) normal_offset_grazing: f32,
+    _pad: [f32; 3],
 }
 
 impl ShadeUniform {
@@ -30,6 +36,8 @@ impl ShadeUniform {
             ambient_tilt: AMBIENT_TILT as f32,
             sky_zenith: SKY_ZENITH.map(|l| l as f32),
             normal_offset: NORMAL_OFFSET_TEXELS as f32,
+            normal_offset_grazing: NORMAL_OFFSET_GRAZING_TEXELS as f32,
+            _pad: [0.0; 3],
         }
     }
 }
@@ -39,7 +47,7 @@ impl ShadeUniform {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(super) struct ShadeLightUniform {
     pub(super) edge_x: [f32; 3],
-    _pad_x: f32,
+    pub(super) patch_radius: f32,
     pub(super) edge_y: [f32; 3],
     _pad_y: f32,
 }
@@ -50,9 +58,11 @@ impl ShadeLightUniform {
             Emitter::Rect { edge_x, edge_y, .. } => (edge_x, edge_y),
             _ => ([0.0; 3], [0.0; 3]),
         };
+        let [x, y] = [edge_x, edge_y].map(|edge| Vec3::from(edge).as_dvec3());
+        let area = x.cross(y).length();
         Self {
             edge_x,
-            _pad_x: 0.0,
+            patch_radius: patch_radius(area, RECT_SAMPLES) as f32,
             edge_y,
             _pad_y: 0.0,
         }

@@ -1,7 +1,7 @@
 //! Animations of nodes. All of a file's play together, each from its own time 0; where two move the same property of a
 //! node, the later one does. Morph weights stay in their rest pose.
 
-use glam::{Affine3A, Quat, Vec3};
+use glam::{DAffine3, Quat, Vec3};
 use gltf::{
     Document,
     animation::{Interpolation as Source, Property},
@@ -71,14 +71,14 @@ fn target(
     }
 }
 
-fn at_rest(node: usize, parent_from_local: &Affine3A) -> NodeAnimation {
+fn at_rest(node: usize, parent_from_local: &DAffine3) -> NodeAnimation {
     let (scale, rotation, translation) = parent_from_local.to_scale_rotation_translation();
     NodeAnimation {
         node,
         rest: Placement {
             translation,
-            rotation,
-            scale,
+            rotation: rotation.as_quat(),
+            scale: scale.as_vec3(),
         },
         translation: None,
         rotation: None,

@@ -8,7 +8,7 @@ use super::{
     document,
     error::{LoadError, Refusal},
     mesh::Meshes,
-    nodes,
+    nodes, places,
 };
 use crate::scene::Scene;
 
@@ -28,7 +28,9 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Refusal> {
     let gltf = document::parse(bytes)?;
     let buffers = Buffers::new(&gltf.document, gltf.blob.as_deref(), path.parent());
     let mut meshes = Meshes::new(&gltf.document, &buffers);
-    let (nodes, scene_node) = nodes::read(&gltf.document, |mesh| meshes.index_of(mesh))?;
+    let (nodes, scene_node) = nodes::read(&gltf.document, &places::read(bytes), |mesh| {
+        meshes.index_of(mesh)
+    })?;
     let animations = animation::read(&gltf.document, &buffers, &scene_node, &nodes)?;
     let (meshes, materials, textures) = meshes.into_parts();
     let mut scene = Scene {
@@ -40,6 +42,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<Scene, Refusal> {
         materials,
         textures,
         animations,
+        ..Scene::default()
     };
     nodes::bound_cameras(&mut scene);
     Ok(scene)

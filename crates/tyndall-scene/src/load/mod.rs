@@ -22,6 +22,7 @@ mod file;
 mod material;
 mod mesh;
 mod nodes;
+mod places;
 
 pub use error::LoadError;
 pub use file::load;

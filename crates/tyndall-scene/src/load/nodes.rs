@@ -2,11 +2,14 @@
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
-use glam::{Affine3A, Mat4, Quat, Vec3};
+use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4, Vec3};
 use gltf::{Document, json, khr_lights_punctual::Kind, scene::Transform};
 use tyndall::frame::{Emitter, Projection};
 
-use super::error::{Refusal, broken, called};
+use super::{
+    error::{Refusal, broken, called},
+    places::FilePlace,
+};
 use crate::{
     geometry::world_from_nodes,
     scene::{Node, Scene},
@@ -19,10 +22,11 @@ const DEFAULT_ASPECT: f32 = 4.0 / 3.0;
 const MIN_DEPTH_RATIO: f32 = 1000.0;
 
 /// Reads the nodes of the default scene, parents first, and the scene's index of each node of the document, where it has
-/// one; `mesh_index` gives the scene's index of a mesh.
+/// one; `places` has the document's nodes' places in double precision, `mesh_index` gives the scene's index of a mesh.
 /// Cameras without a far plane have an infinite one until [`bound_cameras`].
 pub(super) fn read(
     document: &Document,
+    places: &[FilePlace],
     mut mesh_index: impl FnMut(&gltf::Mesh<'_>) -> Result<usize, Refusal>,
 ) -> Result<(Vec<Node>, Vec<Option<usize>>), Refusal> {
     let mut nodes = Vec::new();
@@ -39,8 +43,9 @@ pub(super) fn read(
                 "must have one parent, found a second one or a cycle",
             ));
         }
-        let node =
-            read_node(&source, parent, document).map_err(|refusal| refusal.within(&place))?;
+        let precise = places.get(source.index()).copied().unwrap_or_default();
+        let node = read_node(&source, precise, parent, document)
+            .map_err(|refusal| refusal.within(&place))?;
         let mesh = source.mesh().map(|mesh| mesh_index(&mesh)).transpose()?;
         nodes.push(Node { mesh, ..node });
         let index = nodes.len() - 1;
@@ -69,6 +74,7 @@ fn roots(document: &Document) -> Vec<gltf::Node<'_>> {
 /// Everything but the node's mesh.
 fn read_node(
     source: &gltf::Node<'_>,
+    place: FilePlace,
     parent: Option<usize>,
     document: &Document,
 ) -> Result<Node, Refusal> {
@@ -79,50 +85,49 @@ fn read_node(
     Ok(Node {
         name: source.name().unwrap_or_default().to_owned(),
         parent,
-        parent_from_local: read_transform(source.transform())?,
+        parent_from_local: read_transform(source.transform(), place)?,
         mesh: None,
         camera,
         light: source.light().map(|light| read_light(&light)).transpose()?,
     })
 }
 
-fn read_transform(transform: Transform) -> Result<Affine3A, Refusal> {
+fn read_transform(transform: Transform, place: FilePlace) -> Result<DAffine3, Refusal> {
     let refuse = |field: &str, expected: &str, found: &dyn std::fmt::Debug| {
         broken(field, format!("must be {expected}, found {found:?}"))
     };
     match transform {
         Transform::Matrix { matrix } => {
-            let columns = Mat4::from_cols_array_2d(&matrix);
-            if !columns.is_finite() || columns.row(3) != glam::Vec4::W {
+            let rounded = DMat4::from_cols_array_2d(&matrix.map(|column| column.map(f64::from)));
+            let columns = place
+                .matrix
+                .map_or(rounded, |matrix| DMat4::from_cols_array(&matrix));
+            if !rounded.is_finite() || columns.row(3) != DVec4::W {
                 return Err(refuse(
                     "matrix",
                     "finite with a last row of 0 0 0 1",
                     &matrix,
                 ));
             }
-            Ok(Affine3A::from_mat4(columns))
+            Ok(DAffine3::from_mat4(columns))
         }
         Transform::Decomposed {
             translation,
             rotation,
             scale,
         } => {
-            let rotation = Quat::from_array(rotation);
-            if !rotation.is_finite() || rotation.length_squared() < f32::MIN_POSITIVE {
+            let rotation = DQuat::from_array(rotation.map(f64::from));
+            if !rotation.is_finite() || rotation.length_squared() < f32::MIN_POSITIVE.into() {
                 return Err(refuse("rotation", "finite and not zero", &rotation));
             }
-            let (translation, scale) = (Vec3::from(translation), Vec3::from(scale));
-            if !translation.is_finite() || !scale.is_finite() {
-                return Err(refuse(
-                    "translation and scale",
-                    "finite",
-                    &(translation, scale),
-                ));
+            let (rounded, scale) = (Vec3::from(translation), Vec3::from(scale));
+            if !rounded.is_finite() || !scale.is_finite() {
+                return Err(refuse("translation and scale", "finite", &(rounded, scale)));
             }
-            Ok(Affine3A::from_scale_rotation_translation(
-                scale,
+            Ok(DAffine3::from_scale_rotation_translation(
+                scale.as_dvec3(),
                 rotation.normalize(),
-                translation,
+                place.translation.map_or(rounded.as_dvec3(), DVec3::from),
             ))
         }
     }
@@ -198,6 +203,7 @@ fn read_light(light: &gltf::khr_lights_punctual::Light<'_>) -> Result<Emitter, R
         Kind::Point => Emitter::Point {
             position,
             intensity: strength,
+            radius: 0.0,
         },
         Kind::Spot {
             inner_cone_angle: inner,
@@ -207,17 +213,17 @@ fn read_light(light: &gltf::khr_lights_punctual::Light<'_>) -> Result<Emitter, R
                 return Err(broken(
                     place(),
                     format!(
-                        "must have 0 <= innerConeAngle < outerConeAngle <= pi/2, found {inner} and {outer}"
+                        "must have 0 <= innerConeAngle <= outerConeAngle <= pi/2, found {inner} and {outer}"
                     ),
                 ));
             }
-            let outer = outer.min(FRAC_PI_2.next_down());
             Emitter::Spot {
                 position,
                 direction,
                 intensity: strength,
-                inner: inner.min(outer.next_down()),
+                inner,
                 outer,
+                radius: 0.0,
             }
         }
     })

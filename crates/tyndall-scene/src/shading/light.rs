@@ -3,8 +3,8 @@
 use glam::DVec3;
 use tyndall::{
     cpu::CpuLightInputs,
-    frame::{Emitter, Light},
-    light::LightModel,
+    frame::{Camera, Emitter, Light},
+    light::{LightModel, patch_radius},
     physics::medium::Optics,
 };
 
@@ -35,6 +35,7 @@ pub(super) struct SurfaceLight<'a> {
 impl<'a> SurfaceLight<'a> {
     pub(super) fn new(
         light: &Light,
+        camera: &Camera,
         inputs: &CpuLightInputs<'a>,
         tracer: Option<&'a Tracer>,
     ) -> Self {
@@ -42,11 +43,13 @@ impl<'a> SurfaceLight<'a> {
         if let Emitter::Rect { samples, .. } = &mut sampled.emitter {
             *samples = RECT_SAMPLES;
         }
+        let shadow = SurfaceShadow::new(light, inputs);
+        let tracer = tracer.filter(|_| shadow.is_none());
         Self {
-            samples: LightModel::samples(&sampled, inputs.texture),
-            bare: LightModel::samples(&bare(light), None),
-            shadow: SurfaceShadow::new(light, inputs),
-            traced: tracer.and_then(|tracer| TracedShadow::new(light, inputs, tracer)),
+            samples: LightModel::samples(&sampled, camera, inputs.texture),
+            bare: LightModel::samples(&bare(light), camera, None),
+            traced: tracer.map(|tracer| TracedShadow::new(light, camera, inputs, tracer)),
+            shadow,
         }
     }
 
@@ -81,7 +84,11 @@ impl<'a> SurfaceLight<'a> {
     fn visibility(&self, surface: &SurfacePoint, optics: &Optics) -> DVec3 {
         let mapped = self.shadow.as_ref();
         let mapped = mapped.map_or(DVec3::ONE, |shadow| {
-            shadow.visibility(surface.point, surface.normal)
+            // Lights with maps are one point, or a direction.
+            let incident = self.samples.first();
+            let incident = incident.map(|sample| sample.incident(surface.point, optics));
+            let direction = incident.map_or(DVec3::ZERO, |incident| incident.direction);
+            shadow.visibility(surface.point, surface.normal, direction)
         });
         let traced = self.traced.as_ref();
         let traced = traced.map_or(DVec3::ONE, |shadow| shadow.visibility(surface, optics));
@@ -96,22 +103,25 @@ fn bare(light: &Light) -> Light {
         Emitter::Spot {
             position,
             intensity,
+            radius,
             ..
         } => Emitter::Point {
             position,
             intensity,
+            radius,
         },
         Emitter::Rect {
             center,
             edge_x,
             edge_y,
             radiance,
-            ..
+            samples,
         } => {
-            let area = vector(edge_x).cross(vector(edge_y)).length() as f32;
+            let area = vector(edge_x).cross(vector(edge_y)).length();
             Emitter::Point {
                 position: center,
-                intensity: radiance.map(|l| l * area),
+                intensity: radiance.map(|l| l * area as f32),
+                radius: patch_radius(area, samples) as f32,
             }
         }
         plain => plain,

@@ -15,7 +15,7 @@ use crate::trace::{GBuffer, Tracer};
 
 /// Radiance of the camera's image [W/(m^2 sr)], linear RGB, row by row from the top left; without the medium between
 /// surfaces and the eye. `lights` has one entry a light of the frame, in the same order. Rays through `tracer` find the
-/// surfaces that block rectangular lights; without it none do.
+/// surfaces that block rectangular lights, and others that are given no shadow map; without it none do.
 pub fn shade(
     g_buffer: &GBuffer,
     frame: &Frame,
@@ -26,7 +26,7 @@ pub fn shade(
         .lights
         .iter()
         .zip(lights)
-        .map(|(light, inputs)| SurfaceLight::new(light, inputs, tracer))
+        .map(|(light, inputs)| SurfaceLight::new(light, &frame.camera, inputs, tracer))
         .collect();
     let shading = Shading {
         g_buffer,

@@ -3,8 +3,10 @@
 use glam::{DVec2, DVec3};
 use tyndall::{cpu::CpuLightInputs, frame::Light, shadow::Shadows};
 
-/// Offset along its normal at which a point's shadow is looked up \[texels].
-pub const NORMAL_OFFSET_TEXELS: f64 = 2.0;
+/// Offset along its normal at which a point's shadow is looked up where it faces the light \[texels].
+pub const NORMAL_OFFSET_TEXELS: f64 = 1.0;
+/// What the offset grows by until the light grazes the point, with the sine of the light's angle \[texels].
+pub const NORMAL_OFFSET_GRAZING_TEXELS: f64 = 4.0;
 
 /// A shadow map with its glass, looked up with a filter.
 pub(super) struct SurfaceShadow<'a> {
@@ -20,9 +22,10 @@ impl<'a> SurfaceShadow<'a> {
         Some(Self { shadows, size })
     }
 
-    /// Share of the light that reaches a surface, per channel.
-    pub(super) fn visibility(&self, point: DVec3, normal: DVec3) -> DVec3 {
-        let offset = NORMAL_OFFSET_TEXELS * self.texel_size(point);
+    /// Share of the light that reaches a surface, per channel; `direction` is that in which it travels there.
+    pub(super) fn visibility(&self, point: DVec3, normal: DVec3, direction: DVec3) -> DVec3 {
+        let grazing = NORMAL_OFFSET_GRAZING_TEXELS * normal.cross(direction).length();
+        let offset = (NORMAL_OFFSET_TEXELS + grazing) * self.texel_size(point);
         let point = point + offset * normal;
         let face = self.shadows.face_of(point);
         let clip = self.shadows.faces()[face].clip_from_world * point.extend(1.0);

@@ -65,7 +65,8 @@ fn frame(lights: Vec<Light>, sigma_a: f32) -> Frame {
     }
 }
 
-/// The image of a scene under one light with its fitted map of `texels` a side.
+/// The image of a scene under one light with its fitted map of `texels` a side; without a map it is unblocked, but for a
+/// rectangle.
 fn image(scene: &Scene, emitter: Emitter, texels: Option<u32>, sigma_a: f32) -> Vec<DVec3> {
     let tracer = Tracer::new(scene);
     let mut light = light(emitter);
@@ -85,7 +86,8 @@ fn image(scene: &Scene, emitter: Emitter, texels: Option<u32>, sigma_a: f32) -> 
     };
     let frame = frame(vec![light], sigma_a);
     let g_buffer = tracer.g_buffer(&frame.camera, SIZE, &quiet);
-    let image = shade(&g_buffer, &frame, &[inputs], Some(&tracer));
+    let traced = texels.is_some() || matches!(emitter, Emitter::Rect { .. });
+    let image = shade(&g_buffer, &frame, &[inputs], traced.then_some(&tracer));
     assert!(image.iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
     image.into_iter().map(vector).collect()
 }
@@ -113,10 +115,12 @@ fn unblocked_ground_is_lambert_s() {
         intensity: [7.0; 3],
         inner,
         outer,
+        radius: 0.0,
     };
     let point = Emitter::Point {
         position,
         intensity: [7.0; 3],
+        radius: 0.0,
     };
     let falloff = |to: DVec3| {
         let (c, i, o) = (
@@ -194,6 +198,7 @@ fn curved_and_flat_surfaces_do_not_shadow_themselves() {
         Emitter::Point {
             position: [1.0, 5.0, 2.0],
             intensity: [9.0; 3],
+            radius: 0.0,
         },
     ] {
         let round = opaque(&[ground(), ball(0.8 * Vec3::Y, 0.8, 48)].concat());
@@ -203,7 +208,7 @@ fn curved_and_flat_surfaces_do_not_shadow_themselves() {
         );
         let tracer = Tracer::new(&round);
         let g_buffer = tracer.g_buffer(&from_above(), SIZE, &|_, _| ());
-        let source = LightModel::samples(&light(emitter), None).remove(0);
+        let source = LightModel::samples(&light(emitter), &from_above(), None).remove(0);
         let mut acne = 0;
         let mut compared = 0;
         for (pixel, (with, without)) in with.iter().zip(&without).enumerate() {
@@ -260,6 +265,7 @@ fn the_sky_follows_the_sun() {
     let lamp = Emitter::Point {
         position: [0.0; 3],
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     assert!(
         image(&Scene::default(), lamp, Some(16), 0.0)
@@ -330,10 +336,52 @@ fn a_light_inside_a_corner_stays_finite() {
             Emitter::Point {
                 position,
                 intensity: [1.0; 3],
+                radius: 0.0,
             },
             Some(32),
             0.0,
         );
     }
     assert!(Geometry::new(&opaque(&room)).bounds().is_some());
+}
+
+/// Without a map a light's shadows are traced, sharp and of no texels: those of a fine map but for its borders.
+#[test]
+fn without_a_map_all_lights_are_traced() {
+    let plate = quad(vec3(-1.0, 2.0, -1.0), 2.0 * Vec3::X, 2.0 * Vec3::Z);
+    let scene = opaque(&[ground(), plate.to_vec()].concat());
+    let tracer = Tracer::new(&scene);
+    let g_buffer = tracer.g_buffer(&from_above(), SIZE, &|_, _| ());
+    let (position, intensity) = ([0.5, 5.0, -0.5], [90.0; 3]);
+    let lamp = Emitter::Point {
+        position,
+        intensity,
+        radius: 0.0,
+    };
+    let spot = Emitter::Spot {
+        position,
+        direction: [0.0, -1.0, 0.0],
+        intensity,
+        inner: 0.5,
+        outer: 0.9,
+        radius: 0.0,
+    };
+    for emitter in [SUN, lamp, spot] {
+        let traced = shade(
+            &g_buffer,
+            &frame(vec![light(emitter)], 0.0),
+            &[CpuLightInputs::default()],
+            Some(&tracer),
+        );
+        let mapped = image(&scene, emitter, Some(2048), 0.0);
+        let open = image(&scene, emitter, None, 0.0);
+        let differs = |a: DVec3, b: DVec3| (a - b).length() > 1e-4 * a.max(b).length();
+        let count = |of: &dyn Fn(usize) -> bool| (0..open.len()).filter(|&i| of(i)).count();
+        let shaded = count(&|i| differs(vector(traced[i]), open[i]));
+        let apart = count(&|i| differs(vector(traced[i]), mapped[i]));
+        assert!(
+            shaded > 100 && apart < shaded / 10,
+            "{emitter:?}: {shaded}, {apart}"
+        );
+    }
 }

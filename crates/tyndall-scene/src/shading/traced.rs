@@ -1,9 +1,9 @@
-//! Visibility of a rectangular light by rays to its samples.
+//! Visibility of a light without a map by rays to it, or to a rectangle's samples.
 
 use glam::DVec3;
 use tyndall::{
-    cpu::CpuLightInputs,
-    frame::{Emitter, Light},
+    cpu::{CpuLightInputs, LightSource},
+    frame::{Camera, Light},
     light::LightModel,
     physics::medium::Optics,
 };
@@ -11,27 +11,27 @@ use tyndall::{
 use super::surface::SurfacePoint;
 use crate::{trace::Tracer, view::Ray};
 
-/// Distance from their surface at which rays to a rectangular light begin, relative to the distance to the eye: more than
+/// Distance from their surface at which rays to a light begin, relative to the distance to the eye: more than
 /// the depth buffer's error.
 const OFF_SURFACE: f64 = 1e-4;
 
-/// A rectangle's samples, and the scene that blocks them.
+/// A light, or a rectangle's samples, and the scene that blocks it.
 pub(super) struct TracedShadow<'a> {
     samples: Vec<LightModel<'a>>,
     tracer: &'a Tracer,
 }
 
 impl<'a> TracedShadow<'a> {
-    /// `None` for lights other than rectangles.
     pub(super) fn new(
         light: &Light,
+        camera: &Camera,
         inputs: &CpuLightInputs<'a>,
         tracer: &'a Tracer,
-    ) -> Option<Self> {
-        matches!(light.emitter, Emitter::Rect { .. }).then(|| Self {
-            samples: LightModel::samples(light, inputs.texture),
+    ) -> Self {
+        Self {
+            samples: LightModel::samples(light, camera, inputs.texture),
             tracer,
-        })
+        }
     }
 
     /// The share of the light that arrives; all of it where there is none.
@@ -42,20 +42,26 @@ impl<'a> TracedShadow<'a> {
             let incident = sample.incident(surface.point, optics);
             let received = (-surface.normal.dot(incident.direction)).max(0.0);
             let light = received * incident.irradiance;
-            if let (Some(position), true) = (sample.position(), light != DVec3::ZERO) {
+            if light != DVec3::ZERO {
                 all += light;
-                arriving += light * self.tint(point, position);
+                arriving += light * self.tint(point, sample);
             }
         }
         DVec3::select(all.cmpgt(DVec3::ZERO), arriving / all, DVec3::ONE)
     }
 
-    /// Factor on light between two points: zero where a surface blocks it, else the tints of the glass.
-    fn tint(&self, point: DVec3, light: DVec3) -> DVec3 {
-        let distance = (light - point).length();
+    /// Factor on light up to a point: zero where a surface blocks it, else the tints of the glass.
+    fn tint(&self, point: DVec3, sample: &LightModel<'_>) -> DVec3 {
+        let (direction, distance) = match sample.source() {
+            LightSource::Direction(direction) => (-DVec3::from(direction), f64::INFINITY),
+            LightSource::Position(position) => {
+                let to_light = DVec3::from(position) - point;
+                (to_light.normalize_or_zero(), to_light.length())
+            }
+        };
         let ray = Ray {
             origin: point,
-            direction: (light - point) / distance,
+            direction,
         };
         if self.tracer.blocked(&ray, [0.0, distance]) {
             return DVec3::ZERO;

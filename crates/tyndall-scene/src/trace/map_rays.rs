@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::{DMat4, DVec2};
+use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 use tyndall::{
     cpu::Progress,
@@ -34,6 +34,14 @@ pub(super) struct Texel {
 struct Face {
     clip_from_world: DMat4,
     world_from_clip: DMat4,
+}
+
+impl Face {
+    /// Depth, 1 at the near plane, of a point along a texel's ray.
+    fn depth(&self, texel: &Texel, distance: f64) -> f64 {
+        let point = texel.ray.at(distance);
+        self.clip_from_world.project_point3(point).z
+    }
 }
 
 impl MapRays {
@@ -102,10 +110,28 @@ impl MapRays {
         }
     }
 
-    /// The depth that the map stores for a surface at a distance along a texel's ray \[m].
+    /// The depth that the map stores for a plane through a triangle, which a texel's ray meets at a distance \[m]: where the plane
+    /// is nearest to the light within the texel. So no light passes between a slanted wall's steps.
+    pub(super) fn nearest_depth(&self, texel: &Texel, distance: f64, [a, b, c]: [DVec3; 3]) -> f32 {
+        let face = &self.faces[texel.face];
+        let depth = face.depth(texel, distance);
+        let normal = (b - a).cross(c - a);
+        // In clip space planes are planes, and depth is affine over the map.
+        let plane = face.world_from_clip.transpose() * normal.extend(-normal.dot(a));
+        let slope = plane.truncate().truncate() / plane.z;
+        let half_texel = slope.abs() / DVec2::from(self.size.map(f64::from));
+        let towards = half_texel.element_sum();
+        let nearest = if towards.is_finite() {
+            depth + towards
+        } else {
+            depth
+        };
+        self.stored(nearest.min(1.0))
+    }
+
+    /// The depth that the map stores for a point at a distance along a texel's ray \[m].
     pub(super) fn stored_depth(&self, texel: &Texel, distance: f64) -> f32 {
-        let clip_from_world = self.faces[texel.face].clip_from_world;
-        self.stored(clip_from_world.project_point3(texel.ray.at(distance)).z)
+        self.stored(self.faces[texel.face].depth(texel, distance))
     }
 
     /// The depth that the map stores where there is no surface.

@@ -270,7 +270,7 @@ const DAMAGES: &[(&str, Damage, &str)] = &[
                 json!({"type": "spot", "spot": {"innerConeAngle": 0.5, "outerConeAngle": 0.25}}),
             )
         },
-        "light 0: must have 0 <= innerConeAngle < outerConeAngle <= pi/2, found 0.5 and 0.25",
+        "light 0: must have 0 <= innerConeAngle <= outerConeAngle <= pi/2, found 0.5 and 0.25",
     ),
     (
         "another version",

@@ -1,6 +1,6 @@
 //! Images of rectangles, known in closed form.
 
-use glam::{Affine3A, DMat4, DVec3, Vec3};
+use glam::{DAffine3, DMat4, DVec3, Vec3};
 use tyndall::{
     cpu::LightTexture,
     frame::{Camera, DepthRange, Emitter, Projection, ShadowProjection},
@@ -259,6 +259,7 @@ fn cube_faces_are_webgpus() {
     let emitter = Emitter::Point {
         position: light.to_array(),
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     let (near, far) = (0.5, 20.0);
     for reversed_depth in [false, true] {
@@ -486,7 +487,8 @@ fn nodes_move() {
     let targets = GBufferTargets::new(&gpu.device, [4; 2]).unwrap();
     let camera = camera(false, DepthRange::Standard);
     for z in [2.0, 4.0] {
-        scene.nodes[0].parent_from_local = Affine3A::from_translation(Vec3::new(0.0, 0.0, -z));
+        scene.nodes[0].parent_from_local =
+            DAffine3::from_translation(DVec3::new(0.0, 0.0, -f64::from(z)));
         renderer.place(&gpu.queue, &scene);
         record(gpu, |encoder| {
             renderer.g_buffer(encoder, &targets, &camera, None);

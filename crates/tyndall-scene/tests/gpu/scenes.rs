@@ -58,7 +58,7 @@ fn node(parent_from_local: Affine3A, mesh: usize) -> Node {
     Node {
         name: String::new(),
         parent: None,
-        parent_from_local,
+        parent_from_local: parent_from_local.as_daffine3(),
         mesh: Some(mesh),
         camera: None,
         light: None,
@@ -116,7 +116,8 @@ pub(crate) fn clutter(rectangles: usize) -> Scene {
             Vec3::new(1.5 + d, 1.5 + e, -1.0),
             Quat::from_euler(glam::EulerRot::XYZ, 3.0 * a, 3.0 * b, 3.0 * c),
             Vec3::new(5.0 * x, 4.0 * y, 6.0 * z),
-        );
+        )
+        .as_daffine3();
     }
     scene
 }
@@ -188,6 +189,7 @@ pub(crate) fn lights_with_maps() -> Vec<(&'static str, Emitter, ShadowProjection
         intensity: [1.0; 3],
         inner: 0.1,
         outer: 0.7,
+        radius: 0.0,
     };
     let spot_view = rh::view::look_to_mat4(
         DVec3::from(position.map(f64::from)),
@@ -197,6 +199,7 @@ pub(crate) fn lights_with_maps() -> Vec<(&'static str, Emitter, ShadowProjection
     let point = Emitter::Point {
         position,
         intensity: [1.0; 3],
+        radius: 0.0,
     };
     let fov = |near, far| rh::proj::directx::perspective(1.4, 1.0, near, far) * spot_view;
     vec![

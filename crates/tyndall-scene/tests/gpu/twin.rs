@@ -93,21 +93,23 @@ fn light_maps_are_the_tracers() {
             renderer.glass_map(encoder, &glass, &shadow, &emitter, &projection, None);
         });
         let expected = tracer.shadow_map(&emitter, &projection, size, &|_, _| ());
-        // lavapipe: at edges 9e-5 of the texels differ, the others by 8.3e-6 (a cube with its near plane at 0.2 m).
+        // lavapipe: 5.6e-3 of the texels differ, the others by 8.3e-6 (a cube with its near plane at 0.2 m): the rasteriser takes the
+        // nearest plane of all surfaces that a centre meets, the tracer that of the first. Without the planes' slope it was 9e-5.
         let (fraction, rest) = differing(&read(gpu, shadow.texture()), &expected.depth, 2e-5);
         let what =
             format!("{name} shadow map: {fraction:.6} differ, the others by up to {rest:.2e}");
         eprintln!("{what}");
-        assert!(fraction < 3e-4, "{what}");
+        assert!(fraction < 8e-3, "{what}");
 
         let expected = tracer
             .glass_map(&emitter, &projection, size, GLASS_LAYERS, &|_, _| ())
             .unwrap();
         let found = glass.read(&gpu.device, &gpu.queue).unwrap().texels.concat();
-        // lavapipe: at edges 1.6e-4 of the numbers differ, the others by 1.7e-3 (10-bit roots, bilinear filter).
+        // lavapipe: 7.4e-3 of the numbers differ, where the maps do: panes behind a surface's nearest plane are dark in any case. The
+        // others differ by 1.7e-3 (10-bit roots, bilinear filter).
         let (fraction, rest) = differing(&found, &expected.texels.concat(), 3e-3);
         let what = format!("{name} glass: {fraction:.6} differ, the others by up to {rest:.2e}");
         eprintln!("{what}");
-        assert!(fraction < 5e-4, "{what}");
+        assert!(fraction < 1e-2, "{what}");
     }
 }

@@ -130,12 +130,13 @@ fn built_in_scenes_are_the_cpus() {
     let Some(gpu) = device_or_skip("built-in scenes against the CPU's") else {
         return;
     };
-    // lavapipe: 1.2e-3, 5.2e-3 (leaves are all edges), 2.6e-4, 2.1e-3, 3.5e-8; at most 2.6e-3 of the depths.
-    // Mostly it is edges and the driver's approximate decoding of sRGB.
+    // lavapipe: 1.2e-3, 5.2e-3 (leaves are all edges), 3.0e-3, 2.1e-3, 3.5e-8; at most 2.6e-3 of the depths.
+    // Mostly it is edges and the driver's approximate decoding of sRGB. The terrain had 2.6e-4 before its map held the nearest depth
+    // over a texel: the rasteriser finds it over all of a ridge's slopes, the tracer over the first.
     for (name, bound) in [
         ("church", 4e-3),
         ("forest", 1.5e-2),
-        ("terrain", 1e-3),
+        ("terrain", 5e-3),
         ("slats", 6e-3),
         ("empty", 1e-6),
     ] {

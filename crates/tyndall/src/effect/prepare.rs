@@ -129,7 +129,7 @@ impl Effect {
         } = planned;
         let method = technique.gpu()?;
         let (uniform, variant) =
-            LightUniform::new(light, parts.rays.eye, inputs.glass_layers(light));
+            LightUniform::new(light, &frame.camera, inputs.glass_layers(light));
         let variant = variant.within(&frame.medium);
         let key = (Owner::Light(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::{camera::CameraRays, frame::Emitter, physics::reals};
 
-/// A light nearer to the eye than this \[m] has no place of its own on the image.
+/// A light nearer to the eye than this share of the near plane's distance has no place of its own on the image.
 const LEAST_DISTANCE: f64 = 1e-6;
 
 /// The point of the image that all epipolar lines pass through, and the axis that all slices contain.
@@ -33,7 +33,8 @@ impl Epipole {
         };
         let size = DVec2::new(f64::from(size[0]), f64::from(size[1]));
         let distance = to_light.length();
-        let axis = if camera.is_perspective() && distance > LEAST_DISTANCE {
+        let at_eye = camera.is_perspective() && distance <= LEAST_DISTANCE * camera.planes()[0];
+        let axis = if camera.is_perspective() && !at_eye {
             to_light / distance
         } else {
             camera.forward
@@ -43,7 +44,6 @@ impl Epipole {
             .abs()
             .max_element()
             .max(place.z.abs());
-        let at_eye = camera.is_perspective() && distance <= LEAST_DISTANCE;
         let place = if at_eye || scale <= 1e-6 * distance {
             (0.5 * size).extend(1.0)
         } else {
@@ -177,6 +177,7 @@ mod tests {
                 let lamp = Emitter::Point {
                     position: (sign * distance * direction).as_vec3().to_array(),
                     intensity: [1.0; 3],
+                    radius: 0.0,
                 };
                 for emitter in [sun, lamp] {
                     let found = Epipole::new(&camera, SIZE, &emitter, margin());
@@ -198,6 +199,7 @@ mod tests {
         let lamp = Emitter::Point {
             position: [0.0; 3],
             intensity: [1.0; 3],
+            radius: 0.0,
         };
         let camera = camera();
         let found = Epipole::new(&camera, SIZE, &lamp, margin());

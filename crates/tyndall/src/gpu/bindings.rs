@@ -5,7 +5,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use super::{
     airlight::AirlightTextures,
     layout::{self, Absent},
-    uniforms::{FrameUniform, LightUniform},
+    uniforms::{FrameUniform, LightUniform, LightVariant},
 };
 use crate::{
     camera::CameraRays,
@@ -140,9 +140,8 @@ impl Bindings {
         inputs: &LightInputs<'_>,
     ) -> wgpu::BindGroup {
         let light = with_inputs(&frame.lights[index], inputs);
-        // The eye does not depend on the picture's size.
-        let eye = CameraRays::new(&frame.camera, [1; 2]).eye;
-        let (light, _) = LightUniform::new(&light, eye, inputs.glass_layers(&light));
+        let (light, _) =
+            LightUniform::new(&light, &frame.camera, inputs.glass_layers(&light));
         self.light_group_of(device, &uniform(device, &light), inputs)
     }
 
@@ -155,9 +154,7 @@ impl Bindings {
         inputs: &LightInputs<'_>,
     ) -> Vec<(&'static str, f64)> {
         let light = with_inputs(light, inputs);
-        // The kind does not depend on the eye.
-        let (_, variant) =
-            LightUniform::new(&light, glam::DVec3::ZERO, inputs.glass_layers(&light));
+        let variant = LightVariant::new(&light, inputs.glass_layers(&light));
         let mut constants = variant.constants().to_vec();
         constants.retain(|(name, _)| *name != "MEDIUM_PHASES" && shader.declares(name));
         constants
@@ -274,6 +271,7 @@ mod tests {
             emitter: Emitter::Point {
                 position: [0.0; 3],
                 intensity: [1.0; 3],
+                radius: 0.0,
             },
             shadow: Some(ShadowProjection::Cube {
                 near: 0.1,

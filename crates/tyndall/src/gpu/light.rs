@@ -5,7 +5,10 @@ use glam::{DMat4, DVec3};
 use super::floats::floats;
 use crate::{
     frame::{self, Emitter, ShadowProjection},
-    light::texture::{MappingKind, TextureMapping},
+    light::{
+        fade, light_radius,
+        texture::{MappingKind, TextureMapping},
+    },
     physics::reals,
     shader::{block, constant},
     shadow,
@@ -20,7 +23,7 @@ block! {
         pub(crate) position: [f32; 3],
         pub(crate) cos_outer: f32,
         pub(crate) direction: [f32; 3],
-        pad_direction: f32,
+        pub(crate) radius: f32,
         pub(crate) texture_rows: [[f32; 4]; 3],
         pub(crate) clip_from_world: [[f32; 4]; 4],
         pub(crate) cube_depth: [f32; 2],
@@ -43,6 +46,27 @@ pub(crate) struct LightVariant {
 }
 
 impl LightVariant {
+    /// The variant of a light, in no medium yet.
+    pub(crate) fn new(light: &frame::Light, glass_layers: u32) -> Self {
+        let texture = texture_mapping(light).map(|mapping| mapping.kind);
+        Self {
+            kind: constant(kind_name(&light.emitter)),
+            texture: constant(match texture {
+                None => "LIGHT_TEXTURE_NONE",
+                Some(MappingKind::Affine) => "LIGHT_TEXTURE_AFFINE",
+                Some(MappingKind::Projective) => "LIGHT_TEXTURE_PROJECTIVE",
+                Some(MappingKind::Sphere) => "LIGHT_TEXTURE_SPHERE",
+            }),
+            shadow: constant(match light.shadow {
+                None => "SHADOW_NONE",
+                Some(ShadowProjection::Single { .. }) => "SHADOW_SINGLE",
+                Some(ShadowProjection::Cube { .. }) => "SHADOW_CUBE",
+            }),
+            glass_layers,
+            phases: 0,
+        }
+    }
+
     /// The variant in this medium.
     pub(crate) fn within(self, medium: &frame::Medium) -> Self {
         let bits = medium.components.iter().map(|c| 1 << c.phase.number());
@@ -66,35 +90,28 @@ impl LightVariant {
 
 impl LightUniform {
     /// A light as the shaders see it, and the variant of pipeline it needs.
-    pub(crate) fn new(light: &frame::Light, eye: DVec3, glass_layers: u32) -> (Self, LightVariant) {
-        let mut uniform = Self::default();
-        let mut variant = LightVariant {
-            kind: constant(kind_name(&light.emitter)),
-            texture: constant("LIGHT_TEXTURE_NONE"),
-            shadow: constant("SHADOW_NONE"),
-            glass_layers,
-            phases: 0,
+    pub(crate) fn new(
+        light: &frame::Light,
+        camera: &frame::Camera,
+        glass_layers: u32,
+    ) -> (Self, LightVariant) {
+        let eye = reals(camera.eye);
+        let mut uniform = Self {
+            radius: light_radius(&light.emitter, camera) as f32,
+            ..Self::default()
         };
         uniform.set_emitter(&light.emitter, eye);
         if let Some(projection) = &light.shadow {
-            uniform.set_shadow(&light.emitter, projection, eye, &mut variant);
+            uniform.set_shadow(&light.emitter, projection, eye);
         }
-        let mapping = light
-            .texture
-            .and_then(|placement| TextureMapping::new(&light.emitter, &placement));
-        if let Some(mapping) = mapping {
+        if let Some(mapping) = texture_mapping(light) {
             uniform.texture_rows = mapping.rows.map(|row| {
                 row.extend(row.dot(eye - mapping.origin))
                     .as_vec4()
                     .to_array()
             });
-            variant.texture = constant(match mapping.kind {
-                MappingKind::Affine => "LIGHT_TEXTURE_AFFINE",
-                MappingKind::Projective => "LIGHT_TEXTURE_PROJECTIVE",
-                MappingKind::Sphere => "LIGHT_TEXTURE_SPHERE",
-            });
         }
-        (uniform, variant)
+        (uniform, LightVariant::new(light, glass_layers))
     }
 
     fn set_emitter(&mut self, emitter: &Emitter, eye: DVec3) {
@@ -109,6 +126,7 @@ impl LightUniform {
             Emitter::Point {
                 position,
                 intensity,
+                ..
             } => {
                 self.color = intensity;
                 self.position = floats(reals(position) - eye);
@@ -119,12 +137,12 @@ impl LightUniform {
                 intensity,
                 inner,
                 outer,
+                ..
             } => {
                 self.color = intensity;
                 self.position = floats(reals(position) - eye);
                 self.direction = floats(reals(direction).normalize_or_zero());
-                self.cos_inner = inner.cos();
-                self.cos_outer = outer.cos();
+                [self.cos_inner, self.cos_outer] = fade(inner, outer).map(|cosine| cosine as f32);
             }
             Emitter::Rect {
                 center,
@@ -141,31 +159,28 @@ impl LightUniform {
         }
     }
 
-    fn set_shadow(
-        &mut self,
-        emitter: &Emitter,
-        projection: &ShadowProjection,
-        eye: DVec3,
-        variant: &mut LightVariant,
-    ) {
+    fn set_shadow(&mut self, emitter: &Emitter, projection: &ShadowProjection, eye: DVec3) {
         let (ShadowProjection::Single { reversed_depth, .. }
         | ShadowProjection::Cube { reversed_depth, .. }) = *projection;
         self.standard_depth = u32::from(!reversed_depth);
         match *projection {
             ShadowProjection::Single { .. } => {
-                variant.shadow = constant("SHADOW_SINGLE");
                 if let Some(faces) = shadow::faces(emitter, projection) {
                     let relative = faces[0].clip_from_world * DMat4::from_translation(eye);
                     self.clip_from_world = relative.as_mat4().to_cols_array_2d();
                 }
             }
             ShadowProjection::Cube { near, far, .. } => {
-                variant.shadow = constant("SHADOW_CUBE");
                 let scale = f64::from(near) / (f64::from(far) - f64::from(near));
                 self.cube_depth = [(scale * f64::from(far)) as f32, -scale as f32];
             }
         }
     }
+}
+
+/// Where the light's texture falls, if it has one that fits it.
+fn texture_mapping(light: &frame::Light) -> Option<TextureMapping> {
+    TextureMapping::new(&light.emitter, &light.texture?)
 }
 
 /// The shaders' constant of this kind of light.

@@ -51,7 +51,7 @@ impl<'a> CpuScene<'a> {
     /// The frame with the lights of these indices.
     pub(crate) fn new(frame: &Frame, inputs: &CpuInputs<'a>, lights: &[usize]) -> Self {
         let light = |(light, inputs): (&Light, &CpuLightInputs<'a>)| CpuLight {
-            models: LightModel::samples(light, inputs.texture),
+            models: LightModel::samples(light, &frame.camera, inputs.texture),
             shadows: Shadows::new(&light.emitter, light.shadow.as_ref(), inputs),
         };
         Self {

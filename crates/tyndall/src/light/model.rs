@@ -2,11 +2,14 @@
 
 use glam::DVec3;
 
-use super::{cone, source::LightSource, texture::TextureMapping};
+use super::{
+    cone, hammersley::hammersley, radius::light_radius, source::LightSource,
+    texture::TextureMapping,
+};
 use crate::{
-    frame::{Emitter, Light},
+    frame::{Camera, Emitter, Light},
     inputs::LightTexture,
-    physics::{LIGHT_RADIUS, medium::Optics, reals},
+    physics::{medium::Optics, reals},
 };
 
 /// An f64 view of a [`Light`] of one kind each: a rectangle is taken apart by [`LightModel::samples`].
@@ -14,6 +17,7 @@ use crate::{
 pub struct LightModel<'a> {
     shape: Shape,
     color: DVec3,
+    radius: f64,
     texture: Option<(TextureMapping, &'a LightTexture)>,
 }
 
@@ -41,15 +45,17 @@ enum Shape {
 /// Light that arrives at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Incident {
-    /// The direction in which it travels, unit length.
+    /// The mean direction in which it travels: of unit length, or shorter near the light
+    /// ([`light_radius`](super::light_radius)).
     pub direction: DVec3,
     /// Irradiance on a surface that faces it [W/m^2].
     pub irradiance: DVec3,
 }
 
 impl<'a> LightModel<'a> {
-    /// The light as point sources: itself, or a rectangle's samples (Hammersley points).
-    pub fn samples(light: &Light, texture: Option<&'a LightTexture>) -> Vec<Self> {
+    /// The light as `camera` sees it, as point sources: itself, or a rectangle's samples (Hammersley points).
+    pub fn samples(light: &Light, camera: &Camera, texture: Option<&'a LightTexture>) -> Vec<Self> {
+        let radius = light_radius(&light.emitter, camera);
         let mapping = light
             .texture
             .and_then(|placement| TextureMapping::new(&light.emitter, &placement))
@@ -58,6 +64,7 @@ impl<'a> LightModel<'a> {
             vec![Self {
                 shape,
                 color: reals(color),
+                radius,
                 texture: mapping,
             }]
         };
@@ -75,6 +82,7 @@ impl<'a> LightModel<'a> {
             Emitter::Point {
                 position,
                 intensity,
+                ..
             } => one(
                 Shape::Point {
                     position: reals(position),
@@ -87,15 +95,19 @@ impl<'a> LightModel<'a> {
                 intensity,
                 inner,
                 outer,
-            } => one(
-                Shape::Spot {
-                    position: reals(position),
-                    axis: unit(direction),
-                    cos_inner: f64::from(inner).cos(),
-                    cos_outer: f64::from(outer).cos(),
-                },
-                intensity,
-            ),
+                ..
+            } => {
+                let [cos_inner, cos_outer] = fade(inner, outer);
+                one(
+                    Shape::Spot {
+                        position: reals(position),
+                        axis: unit(direction),
+                        cos_inner,
+                        cos_outer,
+                    },
+                    intensity,
+                )
+            }
             Emitter::Rect {
                 center,
                 edge_x,
@@ -108,8 +120,7 @@ impl<'a> LightModel<'a> {
                 let share = normal.length() / f64::from(samples);
                 (0..samples)
                     .map(|i| {
-                        let u = (f64::from(i) + 0.5) / f64::from(samples);
-                        let v = radical_inverse(i);
+                        let [u, v] = hammersley(i, samples);
                         let position = reals(center) + (u - 0.5) * edge_x + (v - 0.5) * edge_y;
                         let tint = mapping.map_or(DVec3::ONE, |(_, t)| t.sample([u, v]));
                         Self {
@@ -118,6 +129,7 @@ impl<'a> LightModel<'a> {
                                 normal: normal.normalize_or_zero(),
                             },
                             color: reals(radiance) * tint * share,
+                            radius,
                             texture: None,
                         }
                     })
@@ -163,6 +175,11 @@ impl<'a> LightModel<'a> {
     /// section 1's closed forms hold for it.
     pub fn is_plain(&self) -> bool {
         self.texture.is_none() && matches!(self.shape, Shape::Parallel { .. } | Shape::Point { .. })
+    }
+
+    /// The radius by which it is softened \[m]: see [`light_radius`](super::light_radius); 0 of the sun.
+    pub fn radius(&self) -> f64 {
+        self.radius
     }
 
     /// Illuminance [W/m^2] or intensity [W/sr] before cone, texture and distance.
@@ -234,20 +251,20 @@ impl<'a> LightModel<'a> {
             | Shape::Patch { position, .. } => position,
         };
         let offset = point - position;
-        let distance2 = offset.length_squared().max(LIGHT_RADIUS * LIGHT_RADIUS);
-        let distance = distance2.sqrt();
-        let direction = offset / distance;
-        let falloff = self.falloff(direction);
+        let distance = offset.length().hypot(self.radius);
+        let falloff = self.falloff(offset);
         Incident {
-            direction,
-            irradiance: irradiance * optics.transmittance(distance) * (falloff / distance2),
+            direction: offset / distance,
+            irradiance: irradiance
+                * optics.transmittance(distance)
+                * (falloff / (distance * distance)),
         }
     }
 
     /// Transmission of the light ray through a point, on its whole length: texture and cone.
     pub(crate) fn ray_tint(&self, point: DVec3) -> DVec3 {
         let from_light = self.position().map_or(DVec3::ZERO, |p| point - p);
-        self.picture_at(point) * self.falloff(from_light.normalize_or_zero())
+        self.picture_at(point) * self.falloff(from_light)
     }
 
     fn picture_at(&self, point: DVec3) -> DVec3 {
@@ -256,28 +273,42 @@ impl<'a> LightModel<'a> {
         })
     }
 
-    /// The cone's transmission for light that leaves a local light in this direction (unit length).
-    fn falloff(&self, direction: DVec3) -> f64 {
+    /// The cone's transmission for light that gets this far from a local light \[m], or a patch's cosine.
+    fn falloff(&self, offset: DVec3) -> f64 {
         match self.shape {
             Shape::Spot {
                 axis,
                 cos_inner,
                 cos_outer,
                 ..
-            } => spot_falloff(direction.dot(axis), cos_inner, cos_outer),
-            Shape::Patch { normal, .. } => direction.dot(normal).max(0.0),
+            } => spot_falloff(offset.normalize_or_zero().dot(axis), cos_inner, cos_outer),
+            Shape::Patch { normal, .. } => patch_cosine(offset, normal, self.radius),
             Shape::Parallel { .. } | Shape::Point { .. } => 1.0,
         }
     }
 }
 
-/// The smooth edge of a spot's cone, as `KHR_lights_punctual` recommends it; 1 inside, 0 outside.
+/// Cosines of the angles between which a spot fades, inner and outer. They lie 1e-3 apart at least, as `KHR_lights_punctual` has it:
+/// a cone of equal angles has an edge of that width, and one that is narrower all over is nowhere as bright as its intensity.
+pub(crate) fn fade(inner: f32, outer: f32) -> [f64; 2] {
+    // f32's pi/2 is a little more than pi/2.
+    let [inner, outer] = [inner, outer].map(|angle| f64::from(angle).cos().max(0.0));
+    [inner.max(outer + 1e-3), outer]
+}
+
+/// The smooth edge of a spot's cone, as `KHR_lights_punctual` recommends it, between two cosines 1e-3 apart at least; 1 inside,
+/// 0 outside.
 pub fn spot_falloff(cos_angle: f64, cos_inner: f64, cos_outer: f64) -> f64 {
     let t = (cos_angle - cos_outer) / (cos_inner - cos_outer).max(1e-3);
     t.clamp(0.0, 1.0).powi(2)
 }
 
-/// Van der Corput's sequence: the bits of `i`, mirrored about the point.
-fn radical_inverse(i: u32) -> f64 {
-    f64::from(i.reverse_bits()) / 4_294_967_296.0
+/// The cosine at a sample of a rectangle that shines along `normal` (unit), for a point at `offset` from it \[m]; 0 behind it.
+/// Lifted close to it, see [`patch_radius`](super::patch_radius).
+pub fn patch_cosine(offset: DVec3, normal: DVec3, radius: f64) -> f64 {
+    let distance = offset.length().hypot(radius);
+    let (height, radius) = (offset.dot(normal) / distance, radius / distance);
+    let over = height.hypot(radius);
+    let lift = 3.0 * over * over * radius * radius / (over + height.abs());
+    if height > 0.0 { height + lift } else { 0.0 }
 }

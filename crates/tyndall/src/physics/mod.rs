@@ -6,5 +6,4 @@ pub(crate) mod quadrature;
 pub mod transmittance;
 mod vector;
 
-pub use airlight::LIGHT_RADIUS;
 pub(crate) use vector::reals;

@@ -126,6 +126,7 @@ mod tests {
         let emitter = Emitter::Point {
             position: [0.0; 3],
             intensity: [1.0; 3],
+            radius: 0.0,
         };
         for (size, reversed_depth) in [([37, 21], true), ([64, 64], false), ([1, 1], true)] {
             let count = 6 * size[0] as usize * size[1] as usize;

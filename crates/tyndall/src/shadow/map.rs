@@ -186,11 +186,12 @@ impl<'a> Shadows<'a> {
     /// A light ray on the map: from a local light's position, or from any point of the sun's ray. `None` where it
     /// travels behind the map's light.
     pub(crate) fn line(&self, origin: DVec3, direction: DVec3) -> Option<ShadowLine> {
-        let face = self.face_of(origin + direction);
+        let face = self.face_of(self.center + direction);
         let matrix = &self.faces[face].clip_from_world;
         let c0 = *matrix * origin.extend(1.0);
         let c1 = *matrix * direction.extend(0.0);
-        let uv = picture_point(c0 + c1)?;
+        // All of its points fall on one place: a lamp's that of its direction, the sun's that of any of them.
+        let uv = picture_point(if c1.w == 0.0 { c0 } else { c1 })?;
         Some(ShadowLine { uv, face, c0, c1 })
     }
 

@@ -1,5 +1,7 @@
 //! The ranges of a frame, on any backend.
 
+use std::f32::consts::FRAC_PI_2;
+
 use super::require::{Checked, direction, finite, not_negative, not_parallel, require};
 use crate::{
     frame::{Camera, DepthRange, Emitter, Frame, Light, Medium, Projection, ShadowProjection},
@@ -8,6 +10,9 @@ use crate::{
 
 /// The most samples of a rectangular light.
 const MAX_SAMPLES: u32 = 1024;
+
+/// Distance of the eye from the origin, in far planes, beyond which single precision is coarser than a thousandth of what is seen.
+const FARTHEST_EYE: f32 = 8192.0;
 
 /// Checks everything about a frame that does not depend on the backend.
 pub(crate) fn frame(frame: &Frame) -> Checked {
@@ -67,6 +72,15 @@ fn camera(camera: &Camera) -> Checked {
         far,
     )?;
     require(
+        camera
+            .eye
+            .iter()
+            .all(|x| x.abs() <= FARTHEST_EYE * far.abs().max(near.abs())),
+        "camera.eye",
+        "a point within 8192 far planes of the origin: positions relative to one near the eye, subtracted in f64",
+        camera.eye,
+    )?;
+    require(
         perspective || camera.depth_range != DepthRange::ReversedInfinite,
         "camera.depth_range",
         "Standard or Reversed, for an orthographic camera's far plane is finite",
@@ -108,6 +122,14 @@ fn light(field: &str, light: &Light) -> Checked {
         shadow(field, &light.emitter, projection)?;
     }
     if let Some(placement) = &light.texture {
+        if let Emitter::Spot { outer, .. } = light.emitter {
+            require(
+                outer < FRAC_PI_2,
+                format!("{field}.emitter.outer"),
+                "below pi/2 rad with a texture, which is tan(outer) wide",
+                outer,
+            )?;
+        }
         require(
             TextureMapping::new(&light.emitter, placement)
                 .is_some_and(|m| m.rows.iter().all(|r| r.is_finite()) && m.origin.is_finite()),
@@ -132,9 +154,11 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
         Emitter::Point {
             position,
             intensity,
+            radius,
         } => {
             finite(&name("position"), position)?;
             not_negative(&name("intensity"), intensity)?;
+            lamp_radius(&name, radius)?;
         }
         Emitter::Spot {
             position,
@@ -142,11 +166,13 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
             intensity,
             inner,
             outer,
+            radius,
         } => {
             finite(&name("position"), position)?;
             direction(&name("direction"), axis)?;
             not_negative(&name("intensity"), intensity)?;
             cone(&name, [inner, outer])?;
+            lamp_radius(&name, radius)?;
         }
         Emitter::Rect {
             center,
@@ -175,17 +201,26 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
     Ok(())
 }
 
+fn lamp_radius(name: &dyn Fn(&str) -> String, radius: f32) -> Checked {
+    require(
+        radius.is_finite() && radius >= 0.0,
+        name("radius"),
+        "a finite number >= 0 [m]",
+        radius,
+    )
+}
+
 fn cone(name: &dyn Fn(&str) -> String, [inner, outer]: [f32; 2]) -> Checked {
     require(
-        outer > 0.0 && outer < std::f32::consts::FRAC_PI_2,
+        outer > 0.0 && outer <= FRAC_PI_2,
         name("outer"),
-        "an angle between 0 and pi/2 rad, both excluded",
+        "an angle above 0 and up to pi/2 rad",
         outer,
     )?;
     require(
-        inner >= 0.0 && inner < outer,
+        inner >= 0.0 && inner <= outer,
         name("inner"),
-        "an angle from 0 to below outer [rad]",
+        "an angle from 0 to outer [rad]",
         inner,
     )
 }

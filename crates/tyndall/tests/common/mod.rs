@@ -200,6 +200,7 @@ fn lights() -> Vec<(&'static str, Light)> {
     let lamp = Emitter::Point {
         position: LIGHT.to_array(),
         intensity: [20.0, 25.0, 30.0],
+        radius: 0.0,
     };
     let spot = Emitter::Spot {
         position: LIGHT.to_array(),
@@ -207,6 +208,15 @@ fn lights() -> Vec<(&'static str, Light)> {
         intensity: [50.0, 40.0, 30.0],
         inner: 0.3,
         outer: 0.6,
+        radius: 0.0,
+    };
+    let hemisphere = Emitter::Spot {
+        position: LIGHT.to_array(),
+        direction: [0.3, -0.7, 1.0],
+        intensity: [30.0, 25.0, 20.0],
+        inner: 0.8,
+        outer: std::f32::consts::FRAC_PI_2,
+        radius: 0.0,
     };
     let sun_view = glam::camera::rh::view::look_to_mat4(-12.0 * direction, direction, Vec3::X);
     // A reversed depth range: near and far swapped.
@@ -253,6 +263,7 @@ fn lights() -> Vec<(&'static str, Light)> {
         ("lamp, standard depth", light(lamp, cube(false), None)),
         ("lamp in a picture", light(lamp, cube(true), Some(globe))),
         ("spot", light(spot, single(spot_map, false), None)),
+        ("hemisphere", light(hemisphere, cube(true), None)),
         (
             "spot through a picture",
             light(

@@ -135,6 +135,7 @@ fn with_lamp(mut shot_frame: ShotFrame) -> ShotFrame {
             light.emitter = Emitter::Point {
                 position: center,
                 intensity: radiance.map(|r| r * area),
+                radius: 0.0,
             };
             light.shadow = shadow_fit::fit(shot_frame.tracer.geometry(), &light.emitter);
             extra.map_size = [HARD_MAP; 2];

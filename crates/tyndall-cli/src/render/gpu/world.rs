@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use glam::Affine3A;
+use glam::DAffine3;
 use tyndall::{LightInputs, Occluder, SurfaceShadows, frame::Light, gpu::PassTimer};
 use tyndall_scene::gpu::{
     GBufferTargets, SceneOccluders, SceneRenderer, SurfaceLights,
@@ -35,7 +35,7 @@ pub(crate) struct World {
 /// All that the lights' maps depend on.
 #[derive(PartialEq)]
 struct Shown {
-    nodes: Vec<Affine3A>,
+    nodes: Vec<DAffine3>,
     lights: Vec<Light>,
 }
 

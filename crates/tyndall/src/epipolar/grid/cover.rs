@@ -17,15 +17,22 @@ use crate::{
 /// A slice's turn about the axis \[rad] that the bounds of its cells still hold for.
 const WIDEST_SLICE: f64 = 0.25;
 
+/// Distance of a local light from a perspective camera's eye, relative to its longest ray, below which view rays run so nearly along
+/// light rays that f32 does not tell where they cross them.
+const LEAST_DISTANCE: f64 = 1e-4;
+
 /// Steps of b that nodes are stored in, and what is left at either end for "every" and "none".
 const STEPS: f64 = 65533.0;
 
 impl EpipolarGrid {
-    /// `None` where there are no slices, and every ray is to be walked: the eye is at the light, or the view runs along
-    /// the sun.
+    /// `None` where there are no slices, and every ray is to be walked: the eye is next to the light, or the view
+    /// runs along the sun.
     pub(crate) fn new(scene: &GridScene<'_>, resolution: &Resolution) -> Option<Self> {
         let camera = scene.camera;
         let orthographic = !camera.is_perspective();
+        let longest = image_grid(scene.size)
+            .map(|(x, y)| camera.ray_to_far(x, y).length)
+            .fold(0.0, f64::max);
         let (axis, across, local) = match scene.light {
             LightSource::Direction(direction) if orthographic => {
                 let axis = -DVec3::from(direction);
@@ -40,12 +47,14 @@ impl EpipolarGrid {
             }
             LightSource::Position(position) => {
                 let to_light = DVec3::from(position) - camera.eye;
+                let distance = to_light.length();
                 let axis = if orthographic {
                     camera.forward
+                } else if distance > LEAST_DISTANCE * longest {
+                    to_light / distance
                 } else {
-                    to_light.try_normalize()?
+                    return None;
                 };
-                let distance = to_light.length();
                 (axis, axis.any_orthonormal_pair().into(), Some(distance))
             }
         };
@@ -81,9 +90,7 @@ impl EpipolarGrid {
             least_off_axis: resolution.epipole_radius * pixel,
             tint_range: [0.0, 1.0],
             beta_range: [0.0, 1.0],
-            longest: image_grid(scene.size)
-                .map(|(x, y)| camera.ray_to_far(x, y).length)
-                .fold(0.0, f64::max),
+            longest,
         };
         grid.slices = grid.choose_slices(scene, resolution);
         let seen = match local {
@@ -108,7 +115,7 @@ impl EpipolarGrid {
     pub(crate) fn in_rows(mut self, scene: &GridScene<'_>, rows: u32) -> Self {
         let [low, high] = self.b_seen(scene);
         // The image's corners and borders lie a row within.
-        let step = (high - low).max(1e-6) / f64::from(rows - 2);
+        let step = (high - low).max(1e-6 * high.abs().max(low.abs())) / f64::from(rows - 2);
         (self.b_start, self.b_scale) = (low - step, 1.0 / step);
         self
     }

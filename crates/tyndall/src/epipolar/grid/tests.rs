@@ -139,7 +139,7 @@ impl Case {
 
     fn grid(&self, slices: u32) -> Option<EpipolarGrid> {
         let (camera, shadows) = (self.rays(), self.shadows());
-        let models = LightModel::samples(&self.light, None);
+        let models = LightModel::samples(&self.light, &self.camera, None);
         let scene = GridScene {
             camera: &camera,
             size: SIZE,
@@ -195,6 +195,7 @@ fn lights(
             Emitter::Point {
                 position: position_,
                 intensity: [1.0; 3],
+                radius: 0.0,
             },
             ShadowProjection::Cube {
                 near: 0.1,
@@ -214,6 +215,7 @@ fn lights(
                 intensity: [1.0; 3],
                 inner: 0.0,
                 outer,
+                radius: 0.0,
             };
             (emitter, single(matrix, position, heading))
         }

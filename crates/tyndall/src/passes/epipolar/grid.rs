@@ -102,7 +102,7 @@ pub(crate) fn with_scene<T>(
         .shadow
         .and_then(|projection| shadow::faces(&light.emitter, &projection))
         .unwrap_or_default();
-    let models = LightModel::samples(light, None);
+    let models = LightModel::samples(light, &scope.frame.camera, None);
     let model = models.first()?;
     make(&GridScene {
         camera: scope.rays,

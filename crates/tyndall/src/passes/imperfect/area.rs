@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use crate::{
-    error::PrepareError, frame::Emitter, gpu::limits, inputs::LightInputs, light::halton::halton,
-    physics::reals, shader::block,
+    error::PrepareError, frame::Emitter, gpu::limits, inputs::LightInputs,
+    light::hammersley::hammersley, physics::reals, shader::block,
 };
 
 /// From a sample's map to the next one's turn about the normal, in turns.
@@ -63,7 +63,7 @@ pub(crate) struct Maps {
 }
 
 impl AreaLight {
-    /// `None` where the light is no rectangle. Samples are Halton's points.
+    /// `None` where the light is no rectangle. Samples are Hammersley's points, as the reference's.
     pub(crate) fn new(emitter: &Emitter) -> Option<Self> {
         let Emitter::Rect {
             center,
@@ -77,7 +77,7 @@ impl AreaLight {
         };
         let (edge_x, edge_y) = (reals(edge_x), reals(edge_y));
         let position = |i| {
-            let [u, v] = halton(i);
+            let [u, v] = hammersley(i, samples);
             reals(center) + (u - 0.5) * edge_x + (v - 0.5) * edge_y
         };
         let normal = edge_x.cross(edge_y);

@@ -26,7 +26,7 @@ block! {
         pub(crate) levels: u32,
         pub(crate) downscale: u32,
         pub(crate) show: u32,
-        pad: u32,
+        pub(crate) least_weight: f32,
         pub(crate) coarse_size: [u32; 2],
         pub(crate) arc: [f32; 2],
     }
@@ -55,7 +55,7 @@ impl ParamsUniform {
                 Show::Corrected => "SAMPLING_SHOW_CORRECTED",
                 Show::InScatter => "SAMPLING_SHOW_IN_SCATTER",
             }),
-            pad: 0,
+            least_weight: sizes.least_weight(),
             coarse_size: sizes.coarse,
             arc: epipole.arc.map(|x| x as f32),
         }

@@ -68,6 +68,16 @@ impl Sizes {
         }
     }
 
+    /// The weight that samples must have together to stand for a pixel. That of the shaders is 0.01; in an image of so few pixels
+    /// a side that light changes from each to the next as it will, none is enough, and all are marched.
+    pub(super) fn least_weight(&self) -> f32 {
+        if self.size[0].min(self.size[1]) <= FEW_PIXELS {
+            f32::MAX
+        } else {
+            0.01
+        }
+    }
+
     pub(super) fn bytes(&self) -> Bytes {
         let slices = u64::from(self.slices);
         let samples = slices * u64::from(self.samples);
@@ -99,6 +109,9 @@ pub(crate) fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), P
         ],
     )
 }
+
+/// Pixels a side of images that are marched pixel by pixel: measured at 16, the error of interpolation is twice that at 32.
+const FEW_PIXELS: u32 = 16;
 
 /// Levels of a tree; coarser nodes are hardly ever lit or dark throughout (Yusov 2012, section 6.3).
 const MOST_LEVELS: u32 = 12;

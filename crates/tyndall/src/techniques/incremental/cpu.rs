@@ -13,7 +13,7 @@ use crate::{
     epipolar::{EpipolarFrame, low_rank::LowRank},
     error::PrepareError,
     integrate::{CpuLight, CpuScene, RayIntegrator, stretches::integrate_lit},
-    light::LightModel,
+    light::{LightModel, softened_kernel},
     physics::medium::Optics,
     techniques::method::CpuMethod,
 };
@@ -182,7 +182,7 @@ fn slice(
 /// The integrand of eq. 3 over gamma, without visibility, split into a factor of beta alone and a smooth rest.
 ///
 /// Sun: `ds / d gamma = 1 / sin(beta)`. Point: `ds / d gamma = d^2 / (L sin(beta))` with d the distance from the light,
-/// which cancels 1 / d^2, and the scattering angle is beta + gamma.
+/// which cancels 1 / d^2, and the scattering angle is beta + gamma; see [`softened_kernel`].
 struct Kernel<'a> {
     frame: EpipolarFrame,
     model: &'a LightModel<'a>,
@@ -207,8 +207,8 @@ impl Kernel<'_> {
                 if turn >= std::f64::consts::PI {
                     return DVec3::ZERO;
                 }
-                let path = distance * (gamma.sin() + beta.sin()) / turn.sin();
-                self.optics.transmittance(path) * self.optics.scattering(turn.cos())
+                let place = [gamma, beta].map(|angle| distance * angle.sin() / turn.sin());
+                softened_kernel(self.optics, place, self.model.radius(), turn.cos())
             }
         }
     }

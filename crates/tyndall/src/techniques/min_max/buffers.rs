@@ -12,6 +12,7 @@ use crate::{
     frame::{Emitter, Light},
     gpu::{limits, scope::LightScope},
     inputs::LightInputs,
+    light::light_radius,
     passes::epipolar::{EpipolarUniform, with_scene},
     physics::medium::Optics,
     techniques::method::LightRequest,
@@ -136,7 +137,8 @@ fn svd(
         return (none, scope.storage("svd factors", 16));
     };
     let optics = Optics::new(&scope.frame.medium);
-    let factors = svd::factors(grid, &optics, rank as usize);
+    let radius = light_radius(&scope.light.emitter, &scope.frame.camera);
+    let factors = svd::factors(grid, &optics, radius, rank as usize);
     let uniform = scope.uniform("svd", &SvdUniform::new(&factors, rank));
     (uniform, scope.upload("svd factors", &factors.samples()))
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    params::{Integrator, Params},
+    params::{INFO, Integrator, Params, Show},
     svd,
     svd_stretch::{SvdRay, TOLERANCE},
 };
@@ -31,6 +31,12 @@ impl CpuMethod for Params {
         &'a self,
         scene: &'a CpuScene<'a>,
     ) -> Result<Box<dyn RayIntegrator + 'a>, PrepareError> {
+        if self.show != Show::Light {
+            return Err(PrepareError::Unsupported {
+                technique: INFO.name,
+                what: "show, a view of how the light was computed, on the CPU".into(),
+            });
+        }
         Ok(integrator(self, scene))
     }
 }
@@ -134,7 +140,8 @@ impl Forest {
             side: shadows.map_or(1, |s| s.side() as usize),
         };
         let grid = EpipolarGrid::new(&grid, &params.resolution)?;
-        let factors = is_svd.then(|| svd::factors(&grid, &scene.optics, params.rank as usize));
+        let factors = is_svd
+            .then(|| svd::factors(&grid, &scene.optics, model.radius(), params.rank as usize));
         Some(Self {
             grid,
             trees: shadows.map_or_else(Vec::new, |s| rectify::trees(&grid, s)),

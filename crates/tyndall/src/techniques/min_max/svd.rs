@@ -6,7 +6,7 @@
 //! ```text
 //!         F             K
 //! sun     1 / sin beta  exp(-sigma_t s), s = gamma / sin beta
-//! local   1 / h         exp(-sigma_t (s + d)) sum sigma_s rho, h = L sin beta   (ds / d^2 = d gamma / h)
+//! local   1 / h         exp(-sigma_t (s + d)) sum sigma_s rho, h = L sin beta   (ds / d^2 = d gamma / h); see `softened_kernel`
 //! ```
 //!
 //! F is left out of the decomposition: it grows without bound towards the axis, and four terms would be spent on it.
@@ -18,6 +18,7 @@ use crate::{
     epipolar::{grid::EpipolarGrid, low_rank::LowRank},
     error::PrepareError,
     frame::{Camera, Projection},
+    light::softened_kernel,
     physics::medium::Optics,
 };
 #[cfg(feature = "gpu")]
@@ -74,20 +75,24 @@ pub(crate) fn check(params: &Params, camera: &Camera) -> Result<(), PrepareError
 }
 
 /// The factors of K over what a grid covers.
-pub(super) fn factors(grid: &EpipolarGrid, optics: &Optics, rank: usize) -> LowRank {
+pub(super) fn factors(grid: &EpipolarGrid, optics: &Optics, radius: f64, rank: usize) -> LowRank {
     let (local, longest) = (grid.distance(), grid.longest_path());
     let kernel = |beta: f64, gamma: f64| match local {
         None => optics.transmittance(gamma / beta.sin()),
         Some(distance) => {
             // Beyond the far plane, and of rays that do not meet at all, any value does that leaves K smooth.
-            let path = if beta + gamma < PI {
-                distance * (gamma.sin() + beta.sin()) / (beta + gamma).sin().max(1e-9)
-            } else {
-                f64::INFINITY
-            };
-            let path = path.min(longest);
+            let meets = beta + gamma < PI;
+            let along = distance
+                / if meets {
+                    (beta + gamma).sin().max(1e-9)
+                } else {
+                    1e-9
+                };
+            let path = along * (gamma.sin() + beta.sin());
+            let along = along * (longest / path).min(1.0);
             // Light travels at gamma to the axis backwards, the view ray at beta to the axis.
-            optics.transmittance(path) * optics.scattering((beta + gamma).cos())
+            let place = [along * gamma.sin(), along * beta.sin()];
+            softened_kernel(optics, place, radius, (beta + gamma).cos())
         }
     };
     LowRank::new(kernel, grid.beta_range(), grid.tint_range(), rank)

@@ -9,7 +9,7 @@ use crate::{
         low_rank::LowRank,
     },
     light::LightModel,
-    physics::{LIGHT_RADIUS, medium::Optics, quadrature::quadrature},
+    physics::{medium::Optics, quadrature::quadrature},
 };
 
 /// Relative error of the quadrature of a lit stretch, where it has no closed form.
@@ -40,7 +40,7 @@ impl<'a> SvdRay<'a> {
         let (sine, cosine) = place.beta().sin_cos();
         let common = match grid.distance() {
             None => optics.scattering(cosine) / sine,
-            Some(distance) => DVec3::splat(1.0 / (distance * sine).max(LIGHT_RADIUS)),
+            Some(distance) => DVec3::splat(1.0 / (distance * sine)),
         };
         (sine > SVD_LEAST_SINE).then_some(Self {
             ray,

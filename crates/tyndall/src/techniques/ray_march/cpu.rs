@@ -1,5 +1,7 @@
 //! The CPU twin of `ray_march.wesl`, in f64.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::params::{INFO, Params, Spacing};
@@ -8,7 +10,7 @@ use crate::{
     error::PrepareError,
     integrate::{CpuLight, CpuScene, RayIntegrator, integrand},
     light::LightModel,
-    physics::LIGHT_RADIUS,
+    physics::{airlight::PointOnRay, medium::Optics},
     techniques::method::CpuMethod,
 };
 
@@ -56,6 +58,7 @@ impl RayIntegrator for RayMarch<'_> {
 impl RayMarch<'_> {
     fn march(&self, ray: &Ray, light: &CpuLight<'_>, model: &LightModel<'_>) -> DVec3 {
         let span = model.reach(ray.origin, ray.direction, [0.0, ray.length]);
+        let span = seen(&self.scene.optics, span);
         if span[0] >= span[1] {
             return DVec3::ZERO;
         }
@@ -73,60 +76,84 @@ impl RayMarch<'_> {
     }
 }
 
-/// Places of the samples on a ray.
-enum Steps {
-    Equal {
-        start: f64,
-        step: f64,
-    },
-    /// Kulla & Fajardo 2012: `s = t_p + h tan(xi)`, equal steps in xi.
-    Equiangular {
-        projection: f64,
-        height: f64,
-        start: f64,
-        step: f64,
-    },
+/// Optical depth behind which nothing is seen: exp(-32) = 1e-14.
+const MOST_DEPTH: f64 = 32.0;
+/// Steps of equal length on either side of a lamp that are too long where the ray passes it within them.
+const PEAK: f64 = 8.0;
+
+/// The part of the span that light may come from: behind so much of the medium that no channel sees it there is none. In what
+/// is left steps are as short as a dense medium asks for.
+fn seen(optics: &Optics, [a, b]: [f64; 2]) -> [f64; 2] {
+    [a, b.min(MOST_DEPTH / optics.sigma_t.min_element())]
+}
+
+/// Places of the samples on a ray: equal steps, and some of equal angle at a local light.
+struct Steps {
+    start: f64,
+    length: f64,
+    by_angle: Option<ByAngle>,
+}
+
+/// Kulla & Fajardo 2012: `s = t_p + h tan(xi)`, equal steps in xi.
+struct ByAngle {
+    light: PointOnRay,
+    /// The steps that are taken like this.
+    range: Range<u32>,
+    start: f64,
+    turn: f64,
 }
 
 impl Steps {
     fn new(params: &Params, ray: &Ray, model: &LightModel<'_>, [a, b]: [f64; 2]) -> Self {
-        let count = f64::from(params.steps);
-        match (params.spacing, model.position()) {
-            (Spacing::Equiangular, Some(position)) => {
-                let to_light = position - ray.origin;
-                let projection = to_light.dot(ray.direction);
-                let height = (to_light - projection * ray.direction)
-                    .length()
-                    .max(LIGHT_RADIUS);
-                let angle = |s: f64| ((s - projection) / height).atan();
-                Self::Equiangular {
-                    projection,
-                    height,
-                    start: angle(a),
-                    step: (angle(b) - angle(a)) / count,
-                }
+        let length = (b - a) / f64::from(params.steps);
+        let by_angle = model.position().map(|position| {
+            let light = PointOnRay::new(position - ray.origin, ray.direction, model.radius());
+            let range = match params.spacing {
+                Spacing::Equal => peak([a, length], params.steps, light),
+                Spacing::Equiangular => 0..params.steps,
+            };
+            let angle = |step: u32| {
+                ((a + f64::from(step) * length - light.projection) / light.height).atan()
+            };
+            let (start, end) = (angle(range.start), angle(range.end));
+            let turn = (end - start) / f64::from(range.len().max(1) as u32);
+            ByAngle {
+                light,
+                range,
+                start,
+                turn,
             }
-            _ => Self::Equal {
-                start: a,
-                step: (b - a) / count,
-            },
+        });
+        Self {
+            start: a,
+            length,
+            by_angle,
         }
     }
 
     /// The distance of sample `i` and the length of ray it stands for \[m].
     fn step(&self, i: u32) -> (f64, f64) {
-        let i = f64::from(i) + 0.5;
-        match *self {
-            Self::Equal { start, step } => (start + i * step, step),
-            Self::Equiangular {
-                projection,
-                height,
-                start,
-                step,
-            } => {
-                let tan = (start + i * step).tan();
-                (projection + height * tan, height * (1.0 + tan * tan) * step)
+        match &self.by_angle {
+            Some(by) if by.range.contains(&i) => {
+                let PointOnRay { projection, height } = by.light;
+                let tan = (by.start + (f64::from(i - by.range.start) + 0.5) * by.turn).tan();
+                (
+                    projection + height * tan,
+                    height * (1.0 + tan * tan) * by.turn,
+                )
             }
+            _ => (self.start + (f64::from(i) + 0.5) * self.length, self.length),
         }
     }
+}
+
+/// The steps whose light equal lengths do not resolve: about a light that the ray passes more closely.
+fn peak([start, length]: [f64; 2], steps: u32, light: PointOnRay) -> Range<u32> {
+    let room = PEAK * length;
+    if light.height >= room {
+        return 0..0;
+    }
+    let place = |s: f64| ((s - start) / length).clamp(0.0, f64::from(steps));
+    let from = place(light.projection - room).floor() as u32;
+    from..place(light.projection + room).ceil() as u32
 }
