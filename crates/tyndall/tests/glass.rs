@@ -18,8 +18,9 @@ use tyndall_testkit::{device::device_or_skip, metrics::compare, picture::Picture
 /// Texels a side of the maps.
 const MAP: u32 = 96;
 const LAYERS: u32 = 4;
-/// Seeds of the panes that are tried.
+/// Seeds of the panes that are tried, and of the 2,000 panes that are tried on request: three a seed on average.
 const PANES: Range<u32> = 0..8;
+const MANY_PANES: Range<u32> = 8..680;
 
 /// Numbers in [0, 1) that look random, one after another.
 struct Random(u32);
@@ -170,33 +171,67 @@ fn worst_pixel(found: &Picture, truth: &Picture) -> f64 {
     pairs.map(error).fold(0.0, f64::max)
 }
 
+/// What random panes are off by at most: in the mean of a picture, and in one pixel of `min-max`.
+#[derive(Debug, Default)]
+struct Worst {
+    min_max: f64,
+    min_max_pixel: f64,
+    light_volume: f64,
+    min_max_cpu: f64,
+}
+
 /// Differences: f32 against f64, and where the light volumes' mesh meets a shadow's border. Largest measured on lavapipe, of
 /// 24 seeds: 3.0e-4 and 4.3e-4 in the mean, 8.0e-3 in one pixel of `min-max`; on the CPU none.
 #[test]
 fn random_panes_are_the_references() {
-    let Some(gpu) = device_or_skip("panes of glass on the GPU") else {
+    let Some(worst) = worst_of_panes(PANES) else {
         return;
     };
+    assert!(worst.min_max < 6e-4, "{worst:?}");
+    assert!(worst.min_max_pixel < 0.016, "{worst:?}");
+    assert!(worst.light_volume < 8e-4, "{worst:?}");
+    assert!(worst.min_max_cpu < 1e-12, "{worst:?}");
+}
+
+#[test]
+#[ignore = "takes a quarter of an hour"]
+fn many_random_panes_are_the_references() {
+    let Some(worst) = worst_of_panes(MANY_PANES) else {
+        return;
+    };
+    assert!(worst.min_max < 2e-3, "{worst:?}");
+    assert!(worst.light_volume < 4e-3, "{worst:?}");
+    assert!(worst.min_max_cpu < 1e-12, "{worst:?}");
+}
+
+/// Says which panes are worse than all before.
+fn worst_of_panes(seeds: Range<u32>) -> Option<Worst> {
+    let gpu = device_or_skip("panes of glass on the GPU")?;
     let effect = on::effect(gpu);
     let stages = shadowed_stages();
-    for seed in PANES {
+    let mut worst = Worst::default();
+    for seed in seeds {
         let stage = random_stage(&stages, seed);
         let truth = stage.on_cpu(of_the_map());
+        let error = |found: &Picture| compare(found, &truth).expect("same size").rel_mae;
         let min_max = technique("min-max", &[]);
-        let ours = on::on_gpu(gpu, &effect, &stage, min_max.clone());
         let volumes = technique("light-volume", &[("tolerance", Value::Real(0.0))]);
+        let ours = on::on_gpu(gpu, &effect, &stage, min_max.clone());
         let volumes = on::on_gpu(gpu, &effect, &stage, volumes);
-        let worst = worst_pixel(&ours, &truth);
-        assert!(worst < 0.016, "{}: {worst}", stage.name);
-        for (found, bound) in [
-            (ours, 6e-4),
-            (volumes, 8e-4),
-            (stage.on_cpu(min_max), 1e-12),
+        for (held, found) in [
+            (&mut worst.min_max, error(&ours)),
+            (&mut worst.min_max_pixel, worst_pixel(&ours, &truth)),
+            (&mut worst.light_volume, error(&volumes)),
+            (&mut worst.min_max_cpu, error(&stage.on_cpu(min_max))),
         ] {
-            let error = compare(&found, &truth).expect("same size").rel_mae;
-            assert!(error < bound, "{}: {error}", stage.name);
+            // Not a number is the worst.
+            if !(found <= *held) {
+                *held = found;
+                eprintln!("{}: {found:.2e}", stage.name);
+            }
         }
     }
+    Some(worst)
 }
 
 /// What is passed over block by block is what the map holds, point by point.

@@ -140,8 +140,7 @@ impl Bindings {
         inputs: &LightInputs<'_>,
     ) -> wgpu::BindGroup {
         let light = with_inputs(&frame.lights[index], inputs);
-        let (light, _) =
-            LightUniform::new(&light, &frame.camera, inputs.glass_layers(&light));
+        let (light, _) = LightUniform::new(&light, &frame.camera, inputs.glass_layers(&light));
         self.light_group_of(device, &uniform(device, &light), inputs)
     }
 
