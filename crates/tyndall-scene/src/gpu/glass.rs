@@ -16,8 +16,6 @@ use super::{
     uploaded::UploadedScene,
     view::{ViewUniform, reversed_depth},
 };
-use crate::trace::GLASS_LAYERS;
-
 /// A tint of 1 as three 10-bit square roots.
 const CLEAR_TINT: u32 = (1 << 30) - 1;
 
@@ -77,11 +75,11 @@ impl GlassPipelines {
             (views.len(), views.len()),
             (
                 shadow_map.faces.len(),
-                target.layers.len() / GLASS_LAYERS as usize
+                target.layers.len() / target.layers_a_face
             ),
             "a glass map's targets must have the faces of its projection"
         );
-        let faces = target.layers.chunks_exact(GLASS_LAYERS as usize);
+        let faces = target.layers.chunks_exact(target.layers_a_face);
         for ((view, opaque), layers) in views.iter().zip(&shadow_map.faces).zip(faces) {
             let view = scene.view_bind_group(view);
             for (index, layer) in layers.iter().enumerate() {

@@ -143,6 +143,14 @@ impl Meshes {
         self.draws.iter().any(|draw| draw.class == class)
     }
 
+    /// Triangles of a class, each instance's own.
+    pub(super) fn triangles(&self, class: DrawClass) -> usize {
+        let of_class = self.draws.iter().filter(|draw| draw.class == class);
+        of_class
+            .map(|draw| draw.indices.len() / 3 * draw.instances.len())
+            .sum()
+    }
+
     /// Draws one class; `materials` bind to group 1 where the pipeline reads them.
     pub(super) fn draw(
         &self,

@@ -17,7 +17,7 @@ use super::{
     targets::{GBufferTargets, GlassMapTarget, ShadowMapTarget},
     uploaded::UploadedScene,
 };
-use crate::scene::Scene;
+use crate::{scene::Scene, trace::GLASS_LAYERS};
 
 /// A scene on a device, with everything that draws it.
 pub struct SceneRenderer {
@@ -63,6 +63,13 @@ impl SceneRenderer {
     /// True if light through the scene's glass and blended surfaces changes its colour, so that lights need glass maps.
     pub fn has_tinted_glass(&self) -> bool {
         self.has_tinted_glass
+    }
+
+    /// Layers of glass that a light's map needs, 2 to [`GLASS_LAYERS`]: light passes a triangle once, and one layer alone
+    /// could not be peeled off another.
+    pub fn glass_layers(&self) -> u32 {
+        let triangles = self.scene.meshes.triangles(DrawClass::Translucent);
+        triangles.clamp(2, GLASS_LAYERS as usize) as u32
     }
 
     /// Records the G-buffer of `camera`. Its depth is in the camera's convention, its pixels are those of `targets`.

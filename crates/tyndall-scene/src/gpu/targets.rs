@@ -10,7 +10,6 @@ use super::{
     error::GpuSceneError,
     readback::{self, ReadbackError},
 };
-use crate::trace::GLASS_LAYERS;
 
 pub(super) const DEPTH_FORMAT: TextureFormat = TextureFormat::Depth32Float;
 pub(super) const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
@@ -176,28 +175,36 @@ impl ShadowMapTarget {
     }
 }
 
-/// A light's coloured glass, [`GLASS_LAYERS`] layers a face, nearest to the light first.
+/// A light's coloured glass, some layers a face, nearest to the light first.
 pub struct GlassMapTarget {
     texture: Texture,
     view: TextureView,
-    /// Layer `face * GLASS_LAYERS + layer`.
+    /// Layers a face.
+    pub(super) layers_a_face: usize,
+    /// Layer `face * layers_a_face + layer`.
     pub(super) layers: Vec<TextureView>,
     /// Sorts the fragments of the layer being drawn.
     pub(super) depth: Target,
 }
 
 impl GlassMapTarget {
-    /// Makes the texture: as many texels and faces as the light's shadow map.
+    /// Makes the texture: as many texels and faces as the light's shadow map, of a face's layers those that the scene can
+    /// fill, [`super::SceneRenderer::glass_layers`].
     ///
     /// # Errors
     /// [`GpuSceneError`] if the number of layers is beyond the device's limit.
-    pub fn new(device: &Device, shadow_map: &ShadowMapTarget) -> Result<Self, GpuSceneError> {
+    pub fn new(
+        device: &Device,
+        shadow_map: &ShadowMapTarget,
+        layers_a_face: u32,
+    ) -> Result<Self, GpuSceneError> {
         let size = shadow_map.size();
-        let layers = shadow_map.faces.len() as u32 * GLASS_LAYERS;
+        let layers = shadow_map.faces.len() as u32 * layers_a_face;
         let texture = create_texture(device, "glass map", size, layers, GLASS_FORMAT)?;
         Ok(Self {
             view: array_view(&texture),
             layers: layer_views(&texture),
+            layers_a_face: layers_a_face as usize,
             depth: Target::new(device, "glass depth", size, DEPTH_FORMAT)?,
             texture,
         })
@@ -222,7 +229,7 @@ impl GlassMapTarget {
         let (texels, _) = words.as_chunks();
         Ok(GlassMap {
             size: [self.texture.width(), self.texture.height()],
-            layers: GLASS_LAYERS,
+            layers: self.layers_a_face as u32,
             texels: texels.iter().copied().map(unpack_glass).collect(),
         })
     }

@@ -338,8 +338,8 @@ fn glass_is_peeled_from_the_light_on() {
     for reversed in [false, true] {
         let projection = sun_projection(reversed);
         let shadow = ShadowMapTarget::new(&gpu.device, &projection, [8; 2]).unwrap();
-        let glass = GlassMapTarget::new(&gpu.device, &shadow).unwrap();
         let renderer = renderer(gpu, &scene);
+        let glass = GlassMapTarget::new(&gpu.device, &shadow, renderer.glass_layers()).unwrap();
         assert!(renderer.has_tinted_glass());
         record(gpu, |encoder| {
             renderer.shadow_map(encoder, &shadow, &sun, &projection, None);

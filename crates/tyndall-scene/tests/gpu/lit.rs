@@ -11,7 +11,7 @@ use tyndall_scene::{
         upload_light_texture,
     },
     shading::shade,
-    trace::{GBuffer, GLASS_LAYERS, Tracer},
+    trace::{GBuffer, Tracer},
 };
 use tyndall_testkit::device::{TestDevice, device_or_skip};
 
@@ -173,7 +173,7 @@ impl LightMaps {
             };
         };
         let shadow = ShadowMapTarget::new(&gpu.device, &projection, size).unwrap();
-        let glass = GlassMapTarget::new(&gpu.device, &shadow).unwrap();
+        let glass = GlassMapTarget::new(&gpu.device, &shadow, renderer.glass_layers()).unwrap();
         record(gpu, |encoder| {
             renderer.shadow_map(encoder, &shadow, &light.emitter, &projection, None);
             renderer.glass_map(encoder, &glass, &shadow, &light.emitter, &projection, None);
@@ -183,7 +183,13 @@ impl LightMaps {
             depth: read(gpu, shadow.texture()),
         };
         let cpu_glass = tracer
-            .glass_map(&light.emitter, &projection, size, GLASS_LAYERS, &|_, _| ())
+            .glass_map(
+                &light.emitter,
+                &projection,
+                size,
+                renderer.glass_layers(),
+                &|_, _| (),
+            )
             .unwrap();
         Self {
             shadow: Some((shadow, map)),

@@ -3,7 +3,7 @@
 use tyndall::frame::ShadowProjection;
 use tyndall_scene::{
     gpu::{GBufferTargets, GlassMapTarget, ShadowMapTarget},
-    trace::{GLASS_LAYERS, Tracer},
+    trace::Tracer,
 };
 use tyndall_testkit::device::device_or_skip;
 
@@ -87,7 +87,7 @@ fn light_maps_are_the_tracers() {
             size
         };
         let shadow = ShadowMapTarget::new(&gpu.device, &projection, size).unwrap();
-        let glass = GlassMapTarget::new(&gpu.device, &shadow).unwrap();
+        let glass = GlassMapTarget::new(&gpu.device, &shadow, renderer.glass_layers()).unwrap();
         record(gpu, |encoder| {
             renderer.shadow_map(encoder, &shadow, &emitter, &projection, None);
             renderer.glass_map(encoder, &glass, &shadow, &emitter, &projection, None);
@@ -102,7 +102,13 @@ fn light_maps_are_the_tracers() {
         assert!(fraction < 8e-3, "{what}");
 
         let expected = tracer
-            .glass_map(&emitter, &projection, size, GLASS_LAYERS, &|_, _| ())
+            .glass_map(
+                &emitter,
+                &projection,
+                size,
+                renderer.glass_layers(),
+                &|_, _| (),
+            )
             .unwrap();
         let found = glass.read(&gpu.device, &gpu.queue).unwrap().texels.concat();
         // lavapipe: 7.4e-3 of the numbers differ, where the maps do: panes behind a surface's nearest plane are dark in any case. The

@@ -54,7 +54,9 @@ fn rasterised(gpu: &TestDevice, renderer: &SceneRenderer, frame: &Frame) -> [Vec
     let glass = shadow
         .as_ref()
         .filter(|_| renderer.has_tinted_glass())
-        .map(|(_, shadow)| GlassMapTarget::new(&gpu.device, shadow).unwrap());
+        .map(|(_, shadow)| {
+            GlassMapTarget::new(&gpu.device, shadow, renderer.glass_layers()).unwrap()
+        });
     record(gpu, |encoder| {
         if let Some((projection, shadow)) = &shadow {
             renderer.shadow_map(encoder, shadow, &light.emitter, projection, None);

@@ -128,7 +128,8 @@ impl Effect {
             technique,
         } = planned;
         let method = technique.gpu()?;
-        let (uniform, variant) = LightUniform::new(light, &frame.camera, inputs.glass.is_some());
+        let (uniform, variant) =
+            LightUniform::new(light, &frame.camera, inputs.glass_layers(light));
         let variant = variant.within(&frame.medium);
         let key = (Owner::Light(index), "light");
         let uniform = view.pool.uniform(device, queue, key, &uniform);

@@ -140,12 +140,12 @@ impl Bindings {
         inputs: &LightInputs<'_>,
     ) -> wgpu::BindGroup {
         let light = with_inputs(&frame.lights[index], inputs);
-        let (light, _) = LightUniform::new(&light, &frame.camera, inputs.glass.is_some());
+        let (light, _) = LightUniform::new(&light, &frame.camera, inputs.glass_layers(&light));
         self.light_group_of(device, &uniform(device, &light), inputs)
     }
 
-    /// Pipeline constants of a kind of light: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND` and `SHADOW_GLASS`, without those
-    /// that the linked shader does not declare, for wgpu refuses them. Lights of equal constants share pipelines.
+    /// Pipeline constants of a kind of light: `LIGHT_KIND`, `LIGHT_TEXTURE`, `SHADOW_KIND` and `SHADOW_GLASS_LAYERS`, without
+    /// those that the linked shader does not declare, for wgpu refuses them. Lights of equal constants share pipelines.
     /// `MEDIUM_PHASES` is not among them: such pipelines do any medium.
     pub fn light_constants(
         shader: &Linked,
@@ -153,8 +153,7 @@ impl Bindings {
         inputs: &LightInputs<'_>,
     ) -> Vec<(&'static str, f64)> {
         let light = with_inputs(light, inputs);
-        let has_glass = inputs.glass.is_some() && light.shadow.is_some();
-        let variant = LightVariant::new(&light, has_glass);
+        let variant = LightVariant::new(&light, inputs.glass_layers(&light));
         let mut constants = variant.constants().to_vec();
         constants.retain(|(name, _)| *name != "MEDIUM_PHASES" && shader.declares(name));
         constants
@@ -288,7 +287,7 @@ mod tests {
         let of_light = [("LIGHT_KIND", 1.0), ("LIGHT_TEXTURE", 0.0)];
         assert_eq!(constants("tyndall::light::light"), of_light);
         // Without a map in its inputs, the light is unshadowed.
-        let of_shadow = [("SHADOW_KIND", 0.0), ("SHADOW_GLASS", 0.0)];
+        let of_shadow = [("SHADOW_KIND", 0.0), ("SHADOW_GLASS_LAYERS", 0.0)];
         assert_eq!(constants("tyndall::shadow::shadow")[2..], of_shadow);
     }
 }

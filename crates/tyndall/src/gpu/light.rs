@@ -33,20 +33,21 @@ block! {
 }
 
 /// The kind of light and the phase functions that a pipeline is made for: the overrides `LIGHT_KIND`, `LIGHT_TEXTURE`,
-/// `SHADOW_KIND`, `SHADOW_GLASS`, `MEDIUM_PHASES`.
+/// `SHADOW_KIND`, `SHADOW_GLASS_LAYERS`, `MEDIUM_PHASES`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct LightVariant {
     pub(crate) kind: u32,
     pub(crate) texture: u32,
     pub(crate) shadow: u32,
-    pub(crate) glass: bool,
+    /// Layers of coloured glass a face; 0: there is none.
+    pub(crate) glass_layers: u32,
     /// Bit n is set where the medium has phase function n.
     pub(crate) phases: u32,
 }
 
 impl LightVariant {
     /// The variant of a light, in no medium yet.
-    pub(crate) fn new(light: &frame::Light, has_glass: bool) -> Self {
+    pub(crate) fn new(light: &frame::Light, glass_layers: u32) -> Self {
         let texture = texture_mapping(light).map(|mapping| mapping.kind);
         Self {
             kind: constant(kind_name(&light.emitter)),
@@ -61,7 +62,7 @@ impl LightVariant {
                 Some(ShadowProjection::Single { .. }) => "SHADOW_SINGLE",
                 Some(ShadowProjection::Cube { .. }) => "SHADOW_CUBE",
             }),
-            glass: has_glass,
+            glass_layers,
             phases: 0,
         }
     }
@@ -81,7 +82,7 @@ impl LightVariant {
             ("LIGHT_KIND", self.kind.into()),
             ("LIGHT_TEXTURE", self.texture.into()),
             ("SHADOW_KIND", self.shadow.into()),
-            ("SHADOW_GLASS", f64::from(u8::from(self.glass))),
+            ("SHADOW_GLASS_LAYERS", self.glass_layers.into()),
             ("MEDIUM_PHASES", self.phases.into()),
         ]
     }
@@ -92,7 +93,7 @@ impl LightUniform {
     pub(crate) fn new(
         light: &frame::Light,
         camera: &frame::Camera,
-        has_glass: bool,
+        glass_layers: u32,
     ) -> (Self, LightVariant) {
         let eye = reals(camera.eye);
         let mut uniform = Self {
@@ -110,7 +111,7 @@ impl LightUniform {
                     .to_array()
             });
         }
-        (uniform, LightVariant::new(light, has_glass))
+        (uniform, LightVariant::new(light, glass_layers))
     }
 
     fn set_emitter(&mut self, emitter: &Emitter, eye: DVec3) {

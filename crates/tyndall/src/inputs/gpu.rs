@@ -1,6 +1,6 @@
 //! A frame's textures on the GPU, and numbers that come back.
 
-use crate::mesh::Occluder;
+use crate::{frame::Light, mesh::Occluder};
 
 /// The caller's textures of one frame.
 #[derive(Clone, Copy)]
@@ -32,6 +32,16 @@ pub struct LightInputs<'a> {
     /// from the map is reused, provided that the frame before was recorded and submitted. `None`: nothing is reused, for the
     /// map may change from frame to frame.
     pub shadow_revision: Option<u64>,
+}
+
+impl LightInputs<'_> {
+    /// Layers of coloured glass a face; 0 where there is none, or the light casts no shadows.
+    pub(crate) fn glass_layers(&self, light: &Light) -> u32 {
+        let glass = self.glass.filter(|_| light.shadow.is_some());
+        glass.map_or(0, |glass| {
+            glass.texture().depth_or_array_layers() / light.faces()
+        })
+    }
 }
 
 /// Surfaces as points, of which maps are made for the samples of a rectangular light.

@@ -315,7 +315,7 @@ import tyndall::light::stretch::stretch_plain;
                         usage: wgpu::BufferUsages::UNIFORM,
                     })
             };
-            let (light_uniform, variant) = LightUniform::new(&light, &camera, false);
+            let (light_uniform, variant) = LightUniform::new(&light, &camera, 0);
             let frame_buffer = uniform(bytemuck::bytes_of(&FrameUniform::new(
                 &frame,
                 &rays,

@@ -69,13 +69,13 @@ pub(crate) fn in_one_group(wgsl: &str) -> String {
 /// turn.
 fn light_variants() -> Vec<Vec<(String, u32)>> {
     let lights = [(0, 0), (0, 1), (1, 0), (1, 3), (2, 0), (2, 2), (3, 0)];
-    let shadows = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1)];
+    let shadows = [(0, 0), (1, 0), (1, 4), (2, 0), (2, 1)];
     let variant = |(kind, texture), (shadow, glass)| {
         let values = [
             ("LIGHT_KIND", kind),
             ("LIGHT_TEXTURE", texture),
             ("SHADOW_KIND", shadow),
-            ("SHADOW_GLASS", glass),
+            ("SHADOW_GLASS_LAYERS", glass),
         ];
         values
             .map(|(name, value)| (name.to_owned(), value))

@@ -1,8 +1,8 @@
 //! A shadow map and its coloured glass in f64, looked up by points.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
-use rayon::prelude::*;
 
+use super::panes::Panes;
 use crate::{
     frame::{Emitter, ShadowProjection},
     inputs::{CpuLightInputs, GlassMap, ShadowMap},
@@ -97,54 +97,6 @@ pub struct Shadows<'a> {
     pub(super) panes: Panes,
 }
 
-/// Blocks of a glass map that hold any tint: most of a map holds none, and a walk may pass over it block by block.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Panes {
-    /// Blocks a face.
-    pub(super) size: [u32; 2],
-    /// Face by face, row by row.
-    pub(super) tinted: Vec<bool>,
-}
-
-impl Panes {
-    /// Texels a side of a block.
-    const BLOCK: u32 = 32;
-
-    fn new(glass: &GlassMap) -> Self {
-        // Blocks must end where texels do.
-        let block = if glass.size.iter().all(|n| n % Self::BLOCK == 0) {
-            Self::BLOCK
-        } else {
-            1
-        };
-        let size = glass.size.map(|n| n / block);
-        let plane = glass.size[0] as usize * glass.size[1] as usize;
-        let row = |(i, tinted): (usize, &mut [bool])| {
-            let (face, y) = (i / size[1] as usize, i % size[1] as usize);
-            let layers = glass.layers as usize;
-            for layer in face * layers..(face + 1) * layers {
-                let first = layer * plane + y * block as usize * glass.size[0] as usize;
-                let rows = &glass.texels[first..first + (block * glass.size[0]) as usize];
-                for (x, texel) in rows.iter().enumerate() {
-                    let column = x % glass.size[0] as usize / block as usize;
-                    tinted[column] |= texel[..3] != [1.0; 3];
-                }
-            }
-        };
-        let faces = glass.texels.len() / (plane * glass.layers.max(1) as usize);
-        let mut tinted = vec![false; faces * size[0] as usize * size[1] as usize];
-        tinted
-            .par_chunks_mut(size[0] as usize)
-            .enumerate()
-            .for_each(row);
-        Self { size, tinted }
-    }
-
-    pub(super) fn is_tinted(&self, face: usize, block: usize) -> bool {
-        self.tinted[face * self.size[0] as usize * self.size[1] as usize + block]
-    }
-}
-
 impl<'a> Shadows<'a> {
     /// `None` where the light has no shadow map.
     pub fn new(
@@ -165,7 +117,10 @@ impl<'a> Shadows<'a> {
             reversed: reversed_depth,
             map: inputs.shadow_map?,
             glass: inputs.glass,
-            panes: inputs.glass.map(Panes::new).unwrap_or_default(),
+            panes: inputs
+                .glass
+                .map(|glass| Panes::new(glass, |depth| near_is_one(reversed_depth, depth)))
+                .unwrap_or_default(),
         })
     }
 
@@ -319,8 +274,7 @@ impl<'a> Shadows<'a> {
     }
 
     pub(super) fn near_is_one(&self, depth: f32) -> f64 {
-        let depth = f64::from(depth);
-        if self.reversed { depth } else { 1.0 - depth }
+        near_is_one(self.reversed, depth)
     }
 }
 
@@ -339,6 +293,12 @@ impl ShadowLine {
     pub(crate) fn end(&self, depth: f64) -> f64 {
         (depth * self.c0.w - self.c0.z) / (self.c1.z - depth * self.c1.w)
     }
+}
+
+/// A depth, 1 nearest to the light.
+fn near_is_one(reversed: bool, depth: f32) -> f64 {
+    let depth = f64::from(depth);
+    if reversed { depth } else { 1.0 - depth }
 }
 
 /// True iff light reaches a point at `depth` past a texel at `stored` (1 nearest to the light; 0 is nothing at all).

@@ -6,6 +6,7 @@
 
 pub(crate) mod depths;
 mod map;
+mod panes;
 mod shade;
 pub mod walk;
 

@@ -3,7 +3,7 @@
 //! In a face's clip space a ray is `c0 + s c1` (homogeneous). Texel borders are crossed where
 //! `x(s) = border * w(s)`, and inside a texel of depth D the light is blocked where `z(s) < D w(s)`: all linear in s.
 
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 
 use super::{
     map::{Shadows, picture_point, texel_index},
@@ -20,6 +20,12 @@ struct ClipRay {
 impl ClipRay {
     fn at(&self, s: f64) -> DVec4 {
         self.c0 + s * self.c1
+    }
+
+    /// >= 0 where light that has passed this depth reaches the point at `s`.
+    fn margin(&self, s: f64, depth: f64) -> f64 {
+        let clip = self.at(s);
+        clip.z - depth * clip.w
     }
 }
 
@@ -45,7 +51,7 @@ impl RayOnMap<'_> {
         }
     }
 
-    /// Appends what the glass tints of a part of its span.
+    /// Appends what the glass tints of a part of its span; stretches of one tint that touch are one.
     pub(crate) fn walk_tints(&self, part: [f64; 2], shades: &mut Vec<Shade>) {
         if self.shadows.glass.is_some() {
             for (piece, part) in self.pieces_of(part) {
@@ -65,7 +71,7 @@ impl RayOnMap<'_> {
 
 impl Shadows<'_> {
     /// Appends what the map blocks and the glass tints of the ray's points between `a` and `b` \[m], in order of
-    /// distance for each texel; blocked stretches that touch are one.
+    /// distance for each texel; stretches of one tint that touch are one.
     pub fn walk(
         &self,
         origin: glam::DVec3,
@@ -134,8 +140,8 @@ impl Shadows<'_> {
     fn walk_depth(&self, face: usize, ray: &ClipRay, span: [f64; 2], shades: &mut Vec<Shade>) {
         for_each_texel(ray, span, self.map.size, |texel, [from, to]| {
             let stored = self.stored_depth(face, texel);
-            if let Some([start, end]) = behind(ray, stored, [from, to]) {
-                push_blocked(shades, start, end);
+            if let Some(span) = behind(ray, stored, [from, to]) {
+                push(shades, span, DVec3::ZERO);
             }
         });
     }
@@ -143,18 +149,18 @@ impl Shadows<'_> {
     fn walk_glass(&self, face: usize, ray: &ClipRay, span: [f64; 2], shades: &mut Vec<Shade>) {
         let Some(glass) = self.glass else { return };
         for_each_texel(ray, span, self.panes.size, |block, span| {
-            if !self.panes.is_tinted(face, block) {
+            let margins = |depth| span.map(|s| ray.margin(s, depth));
+            if let Some(tint) = self.panes.block(face, block).tint_of(margins) {
+                if tint != DVec3::ONE {
+                    push(shades, span, tint);
+                }
                 return;
             }
             for_each_texel(ray, span, glass.size, |texel, [from, to]| {
                 for layer in 0..glass.layers {
                     let (depth, tint) = self.glass_layer(glass, face, layer, texel);
-                    if let Some([start, end]) = behind(ray, depth, [from, to]) {
-                        shades.push(Shade {
-                            start,
-                            end,
-                            tint: tint.to_array(),
-                        });
+                    if let Some(span) = behind(ray, depth, [from, to]) {
+                        push(shades, span, tint);
                     }
                 }
             });
@@ -162,14 +168,12 @@ impl Shadows<'_> {
     }
 }
 
-fn push_blocked(shades: &mut Vec<Shade>, start: f64, end: f64) {
+/// Goes on with the last shade where it has the same tint and ends where this one starts.
+fn push(shades: &mut Vec<Shade>, [start, end]: [f64; 2], tint: DVec3) {
+    let tint = tint.to_array();
     match shades.last_mut() {
-        Some(last) if last.end == start && last.tint == [0.0; 3] => last.end = end,
-        _ => shades.push(Shade {
-            start,
-            end,
-            tint: [0.0; 3],
-        }),
+        Some(last) if last.end == start && last.tint == tint => last.end = end,
+        _ => shades.push(Shade { start, end, tint }),
     }
 }
 

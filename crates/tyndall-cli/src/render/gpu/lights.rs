@@ -52,7 +52,7 @@ impl LightTargets {
         let glass = shadow_map
             .as_ref()
             .filter(|_| needs.glass && renderer.has_tinted_glass())
-            .map(|shadow_map| GlassMapTarget::new(device, shadow_map))
+            .map(|shadow_map| GlassMapTarget::new(device, shadow_map, renderer.glass_layers()))
             .transpose()
             .map_err(Failure::device)?;
         Ok(Self {

@@ -10,14 +10,12 @@ use crate::{
     shader::constant,
 };
 
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
-
 /// The texture that a pyramid is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     /// The shadow map.
     ShadowMap,
-    /// The nearest layer of glass that tints.
+    /// The layers of glass that tint.
     Glass,
 }
 
@@ -28,27 +26,43 @@ impl Source {
             Self::Glass => "glass pyramid",
         }
     }
+
+    /// Depths alone, or depths and a tint.
+    fn format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::ShadowMap => wgpu::TextureFormat::Rg32Float,
+            Self::Glass => wgpu::TextureFormat::Rgba32Float,
+        }
+    }
 }
 
-/// The shaders that build pyramids: the first level of either source, and any other.
+/// The shaders that build pyramids of either source.
 pub(crate) struct Programs {
-    of_map: ScreenProgram,
-    of_glass: ScreenProgram,
+    of_map: Levels,
+    of_glass: Levels,
+}
+
+/// The shaders of a pyramid's first level, and of any other.
+struct Levels {
+    first: ScreenProgram,
     next: ScreenProgram,
 }
 
 impl cache::Programs for Programs {
     fn new(device: &wgpu::Device, shared: &Shared) -> Self {
-        let program = |source: &str| {
+        let program = |from: &str, format| {
             let module = "passes::pyramid::pyramid_build";
             ScreenProgram::new(device, shared, module, "pyramid_build")
-                .writing(FORMAT)
-                .with("PYRAMID_SOURCE", constant(source).into())
+                .writing(format)
+                .with("PYRAMID_SOURCE", constant(from).into())
+        };
+        let levels = |from: &str, source: Source| Levels {
+            first: program(from, source.format()),
+            next: program("PYRAMID_FROM_PYRAMID", source.format()),
         };
         Self {
-            next: program("PYRAMID_FROM_PYRAMID"),
-            of_map: program("PYRAMID_FROM_MAP"),
-            of_glass: program("PYRAMID_FROM_GLASS"),
+            of_map: levels("PYRAMID_FROM_MAP", Source::ShadowMap),
+            of_glass: levels("PYRAMID_FROM_GLASS", Source::Glass),
         }
     }
 }
@@ -70,8 +84,8 @@ pub(crate) fn build(
     };
     let levels = width.max(height).ilog2() + 1;
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-    let texture = scope.texture(source.name(), extent, levels, FORMAT, usage);
-    let first = match source {
+    let texture = scope.texture(source.name(), extent, levels, source.format(), usage);
+    let programs = match source {
         Source::ShadowMap => &programs.of_map,
         Source::Glass => &programs.of_glass,
     };
@@ -88,7 +102,10 @@ pub(crate) fn build(
                 array_layer_count: Some(1),
                 ..Default::default()
             });
-            let program = if level == 0 { first } else { &programs.next };
+            let program = match level {
+                0 => &programs.first,
+                _ => &programs.next,
+            };
             let resources = [
                 face.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&above),

@@ -42,8 +42,9 @@
 //! # Cost
 //!
 //! Triangles of the map, and fragments: a ray pays for every surface it crosses, seen or not. The list takes half the
-//! full mesh's triangles x 4 bytes at most (64 MiB for 4096^2), the sums a texture of four floats. Coloured glass is
-//! looked for in blocks of 32 x 32 texels; rays behind such a block are walked through the glass map.
+//! full mesh's triangles x 4 bytes at most (64 MiB for 4096^2), the sums a texture of four floats. Of
+//! coloured glass, blocks of 16 x 16 texels hold the range of depths, and the tint behind all of it: a ray behind it, in the
+//! light, passes over blocks of one tint as one stretch, and is walked texel by texel where a block cannot tell.
 //!
 //! # Where it fails
 //!

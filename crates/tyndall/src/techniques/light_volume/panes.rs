@@ -1,4 +1,4 @@
-//! Finds the blocks of the glass map that hold any tint.
+//! Finds what blocks of the glass map hold: their range of depths, and their tint.
 
 use crate::{
     gpu::{
@@ -7,8 +7,18 @@ use crate::{
         program::ComputeProgram,
         scope::{LightScope, Shared},
     },
-    shader::constant,
+    shader::{block, constant},
 };
+
+block! {
+    /// The shaders' `LightVolumePanes`.
+    struct Panes = "LightVolumePanes" in "tyndall::techniques::light_volume::panes", checked by light_volume_panes_is_laid_out_as_in_wgsl {
+        glass: [f32; 2],
+        map: [f32; 2],
+        tint: u32,
+        pad: u32,
+    }
+}
 
 pub(super) fn program(device: &wgpu::Device, shared: &Shared) -> ComputeProgram {
     let module = "techniques::light_volume::panes";
@@ -32,7 +42,7 @@ pub(super) fn pass(
     let count: u64 = blocks.unwrap_or([1; 3]).map(u64::from).iter().product();
     let key = (Owner::Light(scope.index), "light volume panes");
     let usage = wgpu::BufferUsages::STORAGE;
-    let bytes = size_of::<u32>() as u64 * count;
+    let bytes = size_of::<Panes>() as u64 * count;
     let buffer = scope.pool.buffer(scope.device, key, bytes, usage);
     let pass = blocks.map(|blocks| {
         let resources = [buffer.as_entire_binding()];

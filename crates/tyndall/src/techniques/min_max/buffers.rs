@@ -100,6 +100,7 @@ pub(super) fn check(params: &Params, request: &LightRequest<'_>) -> Result<(), P
         &format!("technique `{}` (lights[{index}])", INFO.name),
         &[
             ("slices x samples", bytes.nodes),
+            ("slices x samples of its glass", bytes.glass_nodes),
             ("slices x samples of its picture", bytes.tint_sums),
         ],
     )
@@ -160,7 +161,8 @@ impl Bytes {
         Self {
             nodes: if_used(inputs.shadow_map.is_some(), nodes),
             tint_sums: rows.map_or(16, |rows| 16 * slices * columns * u64::from(rows)),
-            glass_nodes: if_used(inputs.glass.is_some(), nodes),
+            // With a tint each.
+            glass_nodes: if_used(inputs.glass.is_some(), 2 * nodes),
         }
     }
 }

@@ -34,7 +34,7 @@ impl Blocks {
             },
         };
         let rays = case.rays();
-        let (light, variant) = LightUniform::new(&case.light, &case.camera, false);
+        let (light, variant) = LightUniform::new(&case.light, &case.camera, 0);
         let uniform = |contents: &[u8]| {
             gpu.device
                 .create_buffer_init(&wgpu::util::BufferInitDescriptor {
