@@ -162,6 +162,10 @@ fn of_the_map() -> Technique {
     technique("reference", &[("tolerance", Value::Real(1e-3)), visibility])
 }
 
+fn difference(found: &Picture, truth: &Picture) -> f64 {
+    compare(found, truth).expect("same size").rel_mae
+}
+
 /// The worst pixel, relative to its light or a tenth of the picture's mean.
 fn worst_pixel(found: &Picture, truth: &Picture) -> f64 {
     let sum = |p: &[f64; 3]| p.iter().sum::<f64>();
@@ -176,32 +180,35 @@ fn worst_pixel(found: &Picture, truth: &Picture) -> f64 {
 struct Worst {
     min_max: f64,
     min_max_pixel: f64,
+    /// More than without the glass: where three depths of a shadow map meet, volumes of it alone are up to 0.03 wrong.
     light_volume: f64,
     min_max_cpu: f64,
 }
 
-/// Differences: f32 against f64, and where the light volumes' mesh meets a shadow's border. Largest measured on lavapipe, of
-/// 24 seeds: 3.0e-4 and 4.3e-4 in the mean, 8.0e-3 in one pixel of `min-max`; on the CPU none.
-#[test]
-fn random_panes_are_the_references() {
-    let Some(worst) = worst_of_panes(PANES) else {
-        return;
-    };
-    assert!(worst.min_max < 6e-4, "{worst:?}");
-    assert!(worst.min_max_pixel < 0.016, "{worst:?}");
-    assert!(worst.light_volume < 8e-4, "{worst:?}");
-    assert!(worst.min_max_cpu < 1e-12, "{worst:?}");
+impl Worst {
+    /// Differences: f32 against f64, rays along a pane's rim, and where the light volumes' mesh meets a shadow's border.
+    /// Largest measured on lavapipe, of all seeds: 3.9e-4, 8.0e-3, 2.5e-4; on the CPU none.
+    fn hold(&self) {
+        assert!(self.min_max < 8e-4, "{self:?}");
+        assert!(self.min_max_pixel < 0.016, "{self:?}");
+        assert!(self.light_volume < 5e-4, "{self:?}");
+        assert!(self.min_max_cpu < 1e-12, "{self:?}");
+    }
 }
 
 #[test]
-#[ignore = "takes a quarter of an hour"]
+fn random_panes_are_the_references() {
+    if let Some(worst) = worst_of_panes(PANES) {
+        worst.hold();
+    }
+}
+
+#[test]
+#[ignore = "takes minutes"]
 fn many_random_panes_are_the_references() {
-    let Some(worst) = worst_of_panes(MANY_PANES) else {
-        return;
-    };
-    assert!(worst.min_max < 2e-3, "{worst:?}");
-    assert!(worst.light_volume < 4e-3, "{worst:?}");
-    assert!(worst.min_max_cpu < 1e-12, "{worst:?}");
+    if let Some(worst) = worst_of_panes(MANY_PANES) {
+        worst.hold();
+    }
 }
 
 /// Says which panes are worse than all before.
@@ -213,21 +220,30 @@ fn worst_of_panes(seeds: Range<u32>) -> Option<Worst> {
     for seed in seeds {
         let stage = random_stage(&stages, seed);
         let truth = stage.on_cpu(of_the_map());
-        let error = |found: &Picture| compare(found, &truth).expect("same size").rel_mae;
+        let error = |found: &Picture| difference(found, &truth);
         let min_max = technique("min-max", &[]);
         let volumes = technique("light-volume", &[("tolerance", Value::Real(0.0))]);
         let ours = on::on_gpu(gpu, &effect, &stage, min_max.clone());
-        let volumes = on::on_gpu(gpu, &effect, &stage, volumes);
-        for (held, found) in [
-            (&mut worst.min_max, error(&ours)),
-            (&mut worst.min_max_pixel, worst_pixel(&ours, &truth)),
-            (&mut worst.light_volume, error(&volumes)),
-            (&mut worst.min_max_cpu, error(&stage.on_cpu(min_max))),
+        let in_glass = error(&on::on_gpu(gpu, &effect, &stage, volumes.clone()));
+        let mut clear = stage.clone();
+        clear.lights[0].glass = None;
+        let clear_truth = clear.on_cpu(of_the_map());
+        let in_clear = difference(&on::on_gpu(gpu, &effect, &clear, volumes), &clear_truth);
+        let cpu = stage.on_cpu(min_max);
+        for (held, what, found) in [
+            (&mut worst.min_max, "min-max", error(&ours)),
+            (
+                &mut worst.min_max_pixel,
+                "a pixel of min-max",
+                worst_pixel(&ours, &truth),
+            ),
+            (&mut worst.light_volume, "light-volume", in_glass - in_clear),
+            (&mut worst.min_max_cpu, "min-max on the CPU", error(&cpu)),
         ] {
             // Not a number is the worst.
             if !(found <= *held) {
                 *held = found;
-                eprintln!("{}: {found:.2e}", stage.name);
+                eprintln!("{}: {what} {found:.2e}", stage.name);
             }
         }
     }
