@@ -438,18 +438,16 @@ fn drivers_are_heard_only_where_there_is_no_device() {
         ("VK_ICD_FILENAMES", "/nonexistent"),
         ("VK_DRIVER_FILES", "/nonexistent"),
     ];
-    const OURS: [&str; 5] = ["backend: ", "load ", "build ", "render: ", "wrote "];
     for (backend, drivers) in [("gpu", &[][..]), ("auto", &NONE), ("cpu", &[])] {
         let output = run(backend, drivers);
         let stderr = stderr(&output);
         assert!(output.status.success(), "{stderr}");
-        for line in stderr.lines() {
-            let ours = OURS.iter().any(|start| line.starts_with(start));
-            assert!(ours, "{backend}: {stderr}");
+        for noise in ["INFO", "error"] {
+            assert!(!stderr.contains(noise), "{backend}: {stderr}");
         }
     }
     let output = run("gpu", &NONE);
-    assert_fails(&output, 3, &["error: no graphics adapter", "driver: "]);
+    assert_fails(&output, 3, &["error: no graphics adapter", "driver: INFO"]);
 }
 
 /// Surfaces, glass, sky and medium of a scene that has them all.
