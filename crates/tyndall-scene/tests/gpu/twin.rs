@@ -89,7 +89,7 @@ fn light_maps_are_the_tracers() {
     };
     let scene = clutter(200);
     let (renderer, tracer) = (renderer(gpu, &scene), Tracer::new(&scene));
-    let shifts = shifts(gpu, 5);
+    let shifts = shifts(gpu, 3);
     for (name, emitter, projection) in lights_with_maps() {
         let size = [128, 96];
         let size = if matches!(projection, ShadowProjection::Cube { .. }) {
