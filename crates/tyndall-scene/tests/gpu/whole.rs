@@ -125,7 +125,7 @@ fn check(gpu: &TestDevice, name: &str, scene: &Scene, bound: f64) {
         "{name}: relMAE {error:.2e}; {edges:.1e} of the depths differ, the others by {rest:.1e}"
     );
     assert!(
-        error < bound && edges < 8e-3,
+        error < bound && edges < 2e-3,
         "{name}: relMAE {error}, {edges} of the depths differ"
     );
 }
@@ -135,14 +135,15 @@ fn built_in_scenes_are_the_cpus() {
     let Some(gpu) = device_or_skip("built-in scenes against the CPU's") else {
         return;
     };
-    // lavapipe: 1.2e-3, 5.2e-3 (leaves are all edges), 3.0e-3, 2.1e-3, 3.5e-8; at most 2.6e-3 of the depths.
+    // lavapipe: 1.1e-3, 1.2e-3, 2.6e-3, 8.8e-4, 4.4e-8 at most; SwiftShader: 1.9e-3, 2.8e-3 (leaves are all edges), 2.4e-4, 6.8e-4,
+    // 3.8e-8 and 1.1e-3 of the depths. Without the grid it was 1.2e-3 to 5.2e-3 on lavapipe, up to 6.5e-2 on SwiftShader.
     // Mostly it is edges and the driver's approximate decoding of sRGB. The terrain had 2.6e-4 before its map held the nearest depth
     // over a texel: the rasteriser finds it over all of a ridge's slopes, the tracer over the first.
     for (name, bound) in [
-        ("church", 4e-3),
-        ("forest", 1.5e-2),
+        ("church", 3.5e-3),
+        ("forest", 5e-3),
         ("terrain", 5e-3),
-        ("slats", 6e-3),
+        ("slats", 1.7e-3),
         ("empty", 1e-6),
     ] {
         check(gpu, name, &builtin(name).unwrap(), bound);
@@ -155,8 +156,8 @@ fn shared_scenes_are_the_cpus() {
         return;
     };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/assets");
-    // lavapipe: 2.6e-3 (dark textures, decoded approximately), 2.1e-4, 6.4e-5.
-    for (name, bound) in [("sibenik", 8e-3), ("hall", 2e-3), ("terrain", 5e-4)] {
+    // lavapipe: 2.1e-3 (dark textures, decoded approximately), 2.4e-4, 9.4e-5; SwiftShader: 4.9e-4, 2.3e-4, 4.5e-4.
+    for (name, bound) in [("sibenik", 4e-3), ("hall", 5e-4), ("terrain", 5e-4)] {
         let path = folder.join(name).with_extension("glb");
         if path.exists() {
             check(gpu, name, &load(&path).unwrap(), bound);
