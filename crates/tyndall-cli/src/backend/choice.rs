@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use tyndall::techniques::{Backends, TechniqueInfo};
 use tyndall_scene::gpu::{NoAdapter, connect};
 
-use super::{adapter::AdapterDescription, errors::DeviceErrors};
+use super::{adapter::AdapterDescription, errors::DeviceErrors, quiet::quiet_unless_it_fails};
 use crate::failure::Failure;
 
 /// The choice of the command line.
@@ -35,7 +35,8 @@ pub struct Gpu {
 }
 
 impl Backend {
-    /// Chooses where to render with these techniques, and says on standard error what was taken and why.
+    /// Chooses where to render with these techniques, and says on standard error what was taken and why; what drivers
+    /// say there meanwhile, only where it fails.
     ///
     /// # Errors
     /// [`Failure::Usage`] where a technique doesn't run where it is asked to, or no backend runs all of them,
@@ -44,6 +45,23 @@ impl Backend {
         choice: BackendChoice,
         techniques: &[&'static TechniqueInfo],
     ) -> Result<Self, Failure> {
+        let (backend, reason) = quiet_unless_it_fails(|| Self::find(choice, techniques))?;
+        match backend.adapter() {
+            None => eprintln!("backend: CPU ({reason})"),
+            Some(AdapterDescription { name, api, .. }) => {
+                eprintln!("backend: GPU {name}, {api} ({reason})");
+            }
+        }
+        Ok(backend)
+    }
+
+    /// The backend and the reason for it.
+    fn find(
+        choice: BackendChoice,
+        techniques: &[&'static TechniqueInfo],
+    ) -> Result<(Self, String), Failure> {
+        let cpu = |reason: &str| Ok((Self::Cpu, reason.to_owned()));
+        let gpu = |reason: &str| Ok::<_, NoAdapter>((Self::gpu()?, reason.to_owned()));
         let on = |backends| techniques.iter().find(|info| info.backends == backends);
         let name = |info: &&TechniqueInfo| info.name;
         match (
@@ -60,16 +78,16 @@ impl Backend {
             (BackendChoice::Auto, Some(cpu), Some(gpu)) => Err(Failure::Usage(anyhow::anyhow!(
                 "technique {cpu} runs on the CPU only, and {gpu} on the GPU only"
             ))),
-            (BackendChoice::Cpu, ..) => Ok(Self::cpu("as asked")),
+            (BackendChoice::Cpu, ..) => cpu("as asked"),
             (BackendChoice::Auto, Some(name), None) => {
-                Ok(Self::cpu(&format!("technique {name} runs there only")))
+                cpu(&format!("technique {name} runs there only"))
             }
-            (BackendChoice::Gpu, ..) => Self::gpu("as asked").map_err(Failure::device),
+            (BackendChoice::Gpu, ..) => gpu("as asked").map_err(Failure::device),
             (BackendChoice::Auto, None, Some(name)) => {
-                Self::gpu(&format!("technique {name} runs there only")).map_err(Failure::device)
+                gpu(&format!("technique {name} runs there only")).map_err(Failure::device)
             }
-            (BackendChoice::Auto, None, None) => match Self::gpu("there is an adapter") {
-                Err(NoAdapter::Adapter(_)) => Ok(Self::cpu("there is no graphics adapter")),
+            (BackendChoice::Auto, None, None) => match gpu("there is an adapter") {
+                Err(NoAdapter::Adapter(_)) => cpu("there is no graphics adapter"),
                 found => found.map_err(Failure::device),
             },
         }
@@ -91,16 +109,9 @@ impl Backend {
         }
     }
 
-    fn cpu(reason: &str) -> Self {
-        eprintln!("backend: CPU ({reason})");
-        Self::Cpu
-    }
-
-    fn gpu(reason: &str) -> Result<Self, NoAdapter> {
+    fn gpu() -> Result<Self, NoAdapter> {
         let (adapter, device, queue) = connect(wgpu::PowerPreference::HighPerformance)?;
         let adapter = AdapterDescription::of(&adapter);
-        let AdapterDescription { name, api, .. } = &adapter;
-        eprintln!("backend: GPU {name}, {api} ({reason})");
         Ok(Self::Gpu(Box::new(Gpu {
             errors: DeviceErrors::watch(&device),
             adapter,

@@ -3,6 +3,7 @@
 mod adapter;
 mod choice;
 mod errors;
+mod quiet;
 
 pub use adapter::AdapterDescription;
 pub use choice::{Backend, BackendChoice, Gpu};

@@ -557,6 +557,14 @@ fn a_format_that_cannot_blend_is_refused() {
     assert_eq!(error, Some(GpuSceneError::TargetFormat { format }));
 }
 
+/// WebGPU's default limits are what every device has: all tests that draw keep within them.
+#[test]
+fn tests_have_no_more_than_webgpus_default_limits() {
+    if let Some(gpu) = device_or_skip("limits of the tests' device") {
+        assert_eq!(gpu.device.limits(), wgpu::Limits::default());
+    }
+}
+
 #[test]
 fn a_device_is_found_where_there_is_one() {
     if device_or_skip("connect").is_none() {

@@ -11,7 +11,7 @@ use tyndall_scene::{
         upload_light_texture,
     },
     shading::shade,
-    trace::{GBuffer, Tracer},
+    trace::GBuffer,
 };
 use tyndall_testkit::device::{TestDevice, device_or_skip};
 
@@ -31,14 +31,14 @@ fn lit_surfaces_are_the_cpus() {
     for material in &mut scene.materials {
         material.emissive = [0.0; 3];
     }
-    let (renderer, tracer) = (renderer(gpu, &scene), Tracer::new(&scene));
+    let renderer = renderer(gpu, &scene);
     let size = [160, 120];
     let g_buffer = GBufferTargets::new(&gpu.device, size).unwrap();
     let target = color_target(gpu, size);
     let view = target.create_view(&Default::default());
     let lights: Vec<_> = shaded_lights()
         .into_iter()
-        .map(|(name, light)| (name, light, LightMaps::new(gpu, &renderer, &tracer, &light)))
+        .map(|(name, light)| (name, light, LightMaps::new(gpu, &renderer, &light)))
         .collect();
     for (camera_name, camera) in cameras() {
         record(gpu, |encoder| {
@@ -59,9 +59,9 @@ fn lit_surfaces_are_the_cpus() {
             let expected = shade(&cpu_g_buffer, &frame, &[maps.cpu()], None).concat();
             assert!(found.iter().all(|v| v.is_finite()));
             let error = rel_mae(&found, &expected, size);
-            // lavapipe: 4.0e-4 at most with a shadow map, where a texel's depth is that of the point itself within
-            // rounding or glass tints have 10 bits; 6e-7 without.
-            let bound = if light.shadow.is_some() { 1e-3 } else { 2e-6 };
+            // lavapipe: 7.3e-5 at most with a shadow map (a textured cube), where a texel's depth is that of the point itself
+            // within rounding; 6e-7 without. SwiftShader: 1.9e-6 and 6e-7. They were 4.0e-4 and 1.7e-3 with traced glass.
+            let bound = if light.shadow.is_some() { 1.5e-4 } else { 2e-6 };
             eprintln!("{camera_name} {name}: relMAE {error:.2e}");
             assert!(error < bound, "{camera_name} {name}: relMAE {error:.2e}");
         }
@@ -131,7 +131,7 @@ fn frame(camera: Camera, light: Light) -> Frame {
     }
 }
 
-fn read_g_buffer(gpu: &TestDevice, targets: &GBufferTargets) -> GBuffer {
+pub(crate) fn read_g_buffer(gpu: &TestDevice, targets: &GBufferTargets) -> GBuffer {
     let color = |texture| {
         let texels = read(gpu, texture);
         texels.chunks_exact(4).map(|t| [t[0], t[1], t[2]]).collect()
@@ -146,7 +146,7 @@ fn read_g_buffer(gpu: &TestDevice, targets: &GBufferTargets) -> GBuffer {
     }
 }
 
-/// A light's maps on both sides; the shadow map is the GPU's, so that edges don't differ.
+/// A light's maps on both sides; they are the GPU's, so that edges don't differ.
 struct LightMaps {
     shadow: Option<(ShadowMapTarget, ShadowMap)>,
     glass: Option<(GlassMapTarget, GlassMap)>,
@@ -154,7 +154,7 @@ struct LightMaps {
 }
 
 impl LightMaps {
-    fn new(gpu: &TestDevice, renderer: &SceneRenderer, tracer: &Tracer, light: &Light) -> Self {
+    fn new(gpu: &TestDevice, renderer: &SceneRenderer, light: &Light) -> Self {
         let size = [128; 2];
         let texture = light.texture.map(|_| {
             let texel = |i: usize| [i as f32, (i % 5) as f32, 1.0];
@@ -182,15 +182,7 @@ impl LightMaps {
             size,
             depth: read(gpu, shadow.texture()),
         };
-        let cpu_glass = tracer
-            .glass_map(
-                &light.emitter,
-                &projection,
-                size,
-                renderer.glass_layers(),
-                &|_, _| (),
-            )
-            .unwrap();
+        let cpu_glass = glass.read(&gpu.device, &gpu.queue).unwrap();
         Self {
             shadow: Some((shadow, map)),
             glass: Some((glass, cpu_glass)),

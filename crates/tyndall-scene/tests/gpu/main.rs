@@ -8,6 +8,8 @@
 mod known;
 mod lit;
 mod scenes;
+mod shifted;
+mod snapping;
 mod support;
 mod twin;
 mod whole;
