@@ -31,7 +31,7 @@ pub fn run(bytes: &[u8]) -> Outcome {
         occluders: Some(&*OCCLUDERS),
     };
     match render(&drawn.frame, &inputs, &drawn.techniques, &|_, _| ()) {
-        Ok(picture) => checked(&picture.pixels, &drawn),
+        Ok(picture) => checked(&picture.pixels, &(&drawn.frame, &drawn.techniques)),
         Err(_) => Outcome::Refused,
     }
 }

@@ -93,7 +93,7 @@ pub fn run(bytes: &[u8]) -> Option<Outcome> {
     let pixels: Vec<[f32; 4]> = gpu
         .read_texture(view.output().texture())
         .expect("the device works");
-    Some(checked(&pixels, &drawn))
+    Some(checked(&pixels, &(&drawn.frame, &drawn.techniques)))
 }
 
 /// Shadow map, glass and texture.

@@ -17,7 +17,7 @@ fn checked(pixels: &[[f32; 4]], what: &dyn std::fmt::Debug) -> Outcome {
             pixel.iter().all(|x| x.is_finite()) && (-1e-5..=1.0 + 1e-5).contains(&pixel[3]);
         assert!(
             is_good,
-            "must be finite and a transmittance in [0, 1], found {pixel:?} of {what:#?}"
+            "must be finite and a transmittance in [0, 1], found {pixel:?} of {what:?}"
         );
     }
     Outcome::Computed
