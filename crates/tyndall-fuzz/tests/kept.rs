@@ -14,8 +14,8 @@ use rand_pcg::{Pcg32, rand_core::Rng};
 use tyndall_fuzz::{Outcome, frame, gltf, picture, shot};
 use tyndall_testkit::device::device_or_skip;
 
-/// No input may take longer, wherever tests run.
-const LIMIT: Duration = Duration::from_secs(10);
+/// No input may take longer, wherever tests run: the first frame of a kind compiles its pipelines, seconds on a software driver.
+const LIMIT: Duration = Duration::from_secs(30);
 
 fn kept(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = format!("{}/../../fuzz/kept/{target}", env!("CARGO_MANIFEST_DIR"));
@@ -84,7 +84,7 @@ fn random(count: u64, body: impl Fn(&[u8]) -> Outcome) {
     }
     assert!(failed.is_empty(), "{failed:#?}");
     eprintln!("{computed} of {count} computed");
-    // Measured: see below; fewer would mean that inputs don't get past the checks.
+    // Fewer would mean that inputs do not get past the checks.
     assert!(10 * computed >= count, "{computed} of {count}");
 }
 
@@ -100,6 +100,6 @@ fn random_frames() {
 #[test]
 fn random_frames_on_the_gpu() {
     if device_or_skip("random frames").is_some() {
-        random(count(60), |bytes| frame::on_gpu(bytes).unwrap());
+        random(count(12), |bytes| frame::on_gpu(bytes).unwrap());
     }
 }
