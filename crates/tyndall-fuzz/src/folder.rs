@@ -15,7 +15,7 @@ use tyndall_cli::{
     shot::{FrameRange, Shot},
 };
 
-use crate::Outcome;
+use crate::outcome::Outcome;
 
 /// A triangle's floor and a lamp, that shots name `floor.gltf`.
 const FLOOR: &str = include_str!("floor.gltf");

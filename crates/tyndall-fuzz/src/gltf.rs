@@ -4,8 +4,8 @@ use serde_json::Value;
 use tyndall_cli::shot::Shot;
 
 use crate::{
-    Outcome,
     folder::{folder, is_inside, render_small, with_file},
+    outcome::Outcome,
 };
 
 /// Where the JSON of a GLB file begins.

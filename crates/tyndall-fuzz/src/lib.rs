@@ -5,15 +5,9 @@ mod draw;
 mod folder;
 pub mod frame;
 pub mod gltf;
+mod outcome;
 mod picked;
 pub mod picture;
 pub mod shot;
 
-/// How an input ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// With an error that says what is wrong.
-    Refused,
-    /// With values, all of them finite.
-    Computed,
-}
+pub use outcome::Outcome;

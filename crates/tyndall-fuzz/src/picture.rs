@@ -2,7 +2,7 @@
 
 use tyndall_cli::light_texture::load;
 
-use crate::{Outcome, folder::with_file};
+use crate::{folder::with_file, outcome::Outcome};
 
 /// The first bytes of an EXR.
 const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];

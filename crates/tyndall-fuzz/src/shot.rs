@@ -3,8 +3,8 @@
 use tyndall_cli::shot::{SceneSource, Shot};
 
 use crate::{
-    Outcome,
     folder::{folder, is_inside, render_small},
+    outcome::Outcome,
 };
 
 /// Reads a shot, and renders it where that is cheap: built-in scenes take seconds to make, but for the empty one.

@@ -6,7 +6,7 @@ use tyndall::cpu::{CpuInputs, CpuLightInputs, render};
 use tyndall_scene::{builtin::builtin, trace::Tracer};
 
 use super::{checked, drawn::Drawn};
-use crate::Outcome;
+use crate::outcome::Outcome;
 
 /// What blocks light where visibility is traced.
 static OCCLUDERS: LazyLock<Tracer> =

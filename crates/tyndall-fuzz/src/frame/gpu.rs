@@ -16,7 +16,7 @@ use super::{
     checked,
     drawn::{Drawn, Pictures},
 };
-use crate::Outcome;
+use crate::outcome::Outcome;
 
 /// The device and the effect, made once; `None` where there is no driver.
 static GPU: LazyLock<Option<(&'static TestDevice, Effect)>> = LazyLock::new(|| {

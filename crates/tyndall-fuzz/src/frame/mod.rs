@@ -7,7 +7,7 @@ mod gpu;
 pub use cpu::run as on_cpu;
 pub use gpu::run as on_gpu;
 
-use crate::Outcome;
+use crate::outcome::Outcome;
 
 /// The outcome of an image's pixels: radiance, and transmittance last.
 fn checked(pixels: &[[f32; 4]], what: &dyn std::fmt::Debug) -> Outcome {
