@@ -51,6 +51,7 @@ fn package_of(arguments: &[&str]) -> anyhow::Result<()> {
     let crates = [
         "--workspace",
         "--exclude=tyndall-testkit",
+        "--exclude=tyndall-fuzz",
         "--exclude=xtask",
     ];
     // A change is checked before it is committed.

@@ -1,6 +1,7 @@
 //! A frame as plain data: the same [`Frame`] drives the GPU and the CPU.
 //!
-//! World space is right-handed; lengths are metres, angles radians, colours linear RGB.
+//! World space is right-handed; lengths are metres, angles radians, colours linear RGB. So that squares and products stay finite in f32,
+//! lengths are 1e12 m at most (1e-9 m at least where they must not be 0), coefficients 1e9 1/m, strengths of lights 1e18.
 //!
 //! Its origin is the caller's to choose, and single precision holds what is near it: in a large world, subtract a point near the
 //! eye from all positions (and put it into the matrices of shadow maps) in double precision, before they become a frame. Keep

@@ -2,9 +2,15 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use super::require::{Checked, direction, finite, not_negative, not_parallel, require};
+use super::{
+    ranges::{self, coefficient, edge, is_distance, is_length, is_tangent, place, strength},
+    require::{Checked, direction, not_parallel, require},
+};
 use crate::{
-    frame::{Camera, DepthRange, Emitter, Frame, Light, Medium, Projection, ShadowProjection},
+    frame::{
+        Camera, DepthRange, Emitter, Frame, Light, Medium, Projection, ShadowProjection,
+        TexturePlacement,
+    },
     light::texture::TextureMapping,
 };
 
@@ -22,11 +28,12 @@ pub(crate) fn frame(frame: &Frame) -> Checked {
         .lights
         .iter()
         .enumerate()
-        .try_for_each(|(i, l)| light(&format!("lights[{i}]"), l))
+        .try_for_each(|(i, l)| light(&format!("lights[{i}]"), l))?;
+    ranges::brightness(frame)
 }
 
 fn camera(camera: &Camera) -> Checked {
-    finite("camera.eye", camera.eye)?;
+    place("camera.eye", camera.eye)?;
     direction("camera.forward", camera.forward)?;
     not_parallel(
         "camera.up",
@@ -46,29 +53,41 @@ fn camera(camera: &Camera) -> Checked {
         near,
         far,
     }) = camera.projection;
+    let perspective = matches!(camera.projection, Projection::Perspective { .. });
+    let is_half = if perspective { is_tangent } else { is_length };
     require(
-        half_extent.iter().all(|x| x.is_finite() && *x > 0.0),
+        half_extent.into_iter().all(is_half),
         "camera.projection.half_extent",
-        "two finite numbers > 0",
+        "two numbers from 1e-6 to 1e6 (orthographic: from 1e-9 to 1e12 [m])",
         half_extent,
     )?;
+    let is_off = |x: f32| {
+        if perspective {
+            is_tangent(x.abs().max(1.0))
+        } else {
+            is_distance(x)
+        }
+    };
     require(
-        center.iter().all(|x| x.is_finite()),
+        center.into_iter().all(|x| !x.is_nan() && is_off(x)),
         "camera.projection.center",
-        "two finite numbers",
+        "two numbers from -1e6 to 1e6 (orthographic: from -1e12 to 1e12 [m])",
         center,
     )?;
-    let perspective = matches!(camera.projection, Projection::Perspective { .. });
     require(
-        near.is_finite() && (near > 0.0 || !perspective),
+        if perspective {
+            is_length(near)
+        } else {
+            is_distance(near)
+        },
         "camera.projection.near",
-        "a finite number (> 0 for perspective)",
+        "a number from 1e-9 to 1e12 [m] (orthographic: from -1e12)",
         near,
     )?;
     require(
-        far.is_finite() && far > near,
+        is_distance(far) && far > near,
         "camera.projection.far",
-        "a finite number > near",
+        "a number > near, up to 1e12 [m]",
         far,
     )?;
     require(
@@ -96,11 +115,11 @@ fn medium(medium: &Medium) -> Checked {
         medium.components.len(),
     )?;
     for (i, component) in medium.components.iter().enumerate() {
-        not_negative(
+        coefficient(
             &format!("medium.components[{i}].sigma_s"),
             component.sigma_s,
         )?;
-        not_negative(
+        coefficient(
             &format!("medium.components[{i}].sigma_a"),
             component.sigma_a,
         )?;
@@ -122,6 +141,16 @@ fn light(field: &str, light: &Light) -> Checked {
         shadow(field, &light.emitter, projection)?;
     }
     if let Some(placement) = &light.texture {
+        if let TexturePlacement::Parallelogram {
+            center,
+            edge_x,
+            edge_y,
+        } = *placement
+        {
+            place(&format!("{field}.texture.center"), center)?;
+            edge(&format!("{field}.texture.edge_x"), edge_x)?;
+            edge(&format!("{field}.texture.edge_y"), edge_y)?;
+        }
         if let Emitter::Spot { outer, .. } = light.emitter {
             require(
                 outer < FRAC_PI_2,
@@ -149,15 +178,15 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
             illuminance,
         } => {
             direction(&name("direction"), travel)?;
-            not_negative(&name("illuminance"), illuminance)?;
+            strength(&name("illuminance"), illuminance)?;
         }
         Emitter::Point {
             position,
             intensity,
             radius,
         } => {
-            finite(&name("position"), position)?;
-            not_negative(&name("intensity"), intensity)?;
+            place(&name("position"), position)?;
+            strength(&name("intensity"), intensity)?;
             lamp_radius(&name, radius)?;
         }
         Emitter::Spot {
@@ -168,9 +197,9 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
             outer,
             radius,
         } => {
-            finite(&name("position"), position)?;
+            place(&name("position"), position)?;
             direction(&name("direction"), axis)?;
-            not_negative(&name("intensity"), intensity)?;
+            strength(&name("intensity"), intensity)?;
             cone(&name, [inner, outer])?;
             lamp_radius(&name, radius)?;
         }
@@ -181,15 +210,16 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
             radiance,
             samples,
         } => {
-            finite(&name("center"), center)?;
-            direction(&name("edge_x"), edge_x)?;
+            place(&name("center"), center)?;
+            edge(&name("edge_x"), edge_x)?;
+            edge(&name("edge_y"), edge_y)?;
             not_parallel(
                 &name("edge_y"),
                 edge_y,
                 edge_x,
                 "an edge that is not parallel to edge_x",
             )?;
-            not_negative(&name("radiance"), radiance)?;
+            strength(&name("radiance"), radiance)?;
             require(
                 (1..=MAX_SAMPLES).contains(&samples),
                 name("samples"),
@@ -203,9 +233,9 @@ fn emitter(field: &str, emitter: &Emitter) -> Checked {
 
 fn lamp_radius(name: &dyn Fn(&str) -> String, radius: f32) -> Checked {
     require(
-        radius.is_finite() && radius >= 0.0,
+        radius >= 0.0 && is_distance(radius),
         name("radius"),
-        "a finite number >= 0 [m]",
+        "a number from 0 to 1e12 [m]",
         radius,
     )
 }
@@ -231,9 +261,9 @@ fn shadow(field: &str, emitter: &Emitter, projection: &ShadowProjection) -> Chec
         ShadowProjection::Single {
             clip_from_world, ..
         } => require(
-            clip_from_world.iter().flatten().all(|x| x.is_finite()),
+            clip_from_world.iter().flatten().all(|x| is_distance(*x)),
             field,
-            "a matrix of finite numbers",
+            "a matrix of numbers from -1e12 to 1e12",
             clip_from_world,
         ),
         ShadowProjection::Cube { near, far, .. } => {
@@ -244,9 +274,9 @@ fn shadow(field: &str, emitter: &Emitter, projection: &ShadowProjection) -> Chec
                 projection,
             )?;
             require(
-                near > 0.0 && far > near && far.is_finite(),
+                is_length(near) && is_length(far) && far > near,
                 field,
-                "0 < near < far, both finite",
+                "1e-9 <= near < far <= 1e12 [m]",
                 [near, far],
             )
         }

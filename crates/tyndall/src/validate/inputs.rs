@@ -57,12 +57,7 @@ pub(crate) struct GivenInputs {
 pub(crate) fn cpu_inputs(frame: &Frame, inputs: &CpuInputs<'_>) -> Checked {
     let pixels = area("inputs.size", inputs.size)?;
     size("inputs.depth", pixels, inputs.depth.len())?;
-    require(
-        inputs.depth.iter().all(|d| !d.is_nan()),
-        "inputs.depth",
-        "numbers",
-        "NaN",
-    )?;
+    values("inputs.depth", inputs.depth, IS_FINITE)?;
     let given = inputs.lights.iter().map(|l| GivenInputs {
         shadow_map: l.shadow_map.is_some(),
         glass: l.glass.is_some(),
@@ -75,6 +70,7 @@ pub(crate) fn cpu_inputs(frame: &Frame, inputs: &CpuInputs<'_>) -> Checked {
         if let Some(map) = inputs.shadow_map {
             let texels = area(&field("shadow_map.size"), map.size)?;
             size(&field("shadow_map.depth"), faces * texels, map.depth.len())?;
+            values(&field("shadow_map.depth"), &map.depth, IS_FINITE)?;
         }
         if let Some(GlassMap {
             size: side,
@@ -88,13 +84,31 @@ pub(crate) fn cpu_inputs(frame: &Frame, inputs: &CpuInputs<'_>) -> Checked {
                 faces * area * *layers as usize,
                 texels.len(),
             )?;
+            let tints = texels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
+            values(&field("glass.texels"), &tints.collect::<Vec<_>>(), IS_SHARE)?;
         }
         if let Some(texture) = inputs.texture {
             let texels = area(&field("texture.size"), texture.size)?;
             size(&field("texture.texels"), texels, texture.texels.len())?;
+            let texels = texture.texels.as_flattened();
+            values(&field("texture.texels"), texels, IS_LIGHT)?;
         }
     }
     Ok(())
+}
+
+/// What values have to be, and in words.
+type Rule = (fn(f32) -> bool, &'static str);
+
+const IS_FINITE: Rule = (f32::is_finite, "finite numbers");
+const IS_SHARE: Rule = (|x| (0.0..=1.0).contains(&x), "numbers from 0 to 1");
+const IS_LIGHT: Rule = (|x| (0.0..=1e6).contains(&x), "numbers from 0 to 1e6");
+
+fn values(field: &str, values: &[f32], (holds, expected): Rule) -> Checked {
+    match values.iter().position(|x| !holds(*x)) {
+        None => Ok(()),
+        Some(i) => require(false, format!("{field}[{i}]"), expected, values[i]),
+    }
 }
 
 fn area(field: &str, size: [u32; 2]) -> Result<usize, PrepareError> {

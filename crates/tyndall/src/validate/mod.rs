@@ -4,6 +4,7 @@ mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod inputs;
+mod ranges;
 mod require;
 
 pub(crate) use frame::frame;

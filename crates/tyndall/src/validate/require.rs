@@ -22,24 +22,6 @@ pub(super) fn require(
     })
 }
 
-pub(super) fn finite(field: &str, value: [f32; 3]) -> Checked {
-    require(
-        value.iter().all(|x| x.is_finite()),
-        field,
-        "three finite numbers",
-        value,
-    )
-}
-
-pub(super) fn not_negative(field: &str, value: [f32; 3]) -> Checked {
-    require(
-        value.iter().all(|x| x.is_finite() && *x >= 0.0),
-        field,
-        "three finite numbers >= 0",
-        value,
-    )
-}
-
 /// Shorter vectors have no direction in f32.
 pub(super) fn direction(field: &str, value: [f32; 3]) -> Checked {
     let length = reals(value).length();
