@@ -84,8 +84,8 @@ pub(crate) fn cpu_inputs(frame: &Frame, inputs: &CpuInputs<'_>) -> Checked {
                 faces * area * *layers as usize,
                 texels.len(),
             )?;
-            let tints = texels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
-            values(&field("glass.texels"), &tints.collect::<Vec<_>>(), IS_SHARE)?;
+            let tints = texels.iter().flat_map(|[r, g, b, _]| [r, g, b]);
+            values(&field("glass.texels"), tints, IS_SHARE)?;
         }
         if let Some(texture) = inputs.texture {
             let texels = area(&field("texture.size"), texture.size)?;
@@ -104,10 +104,15 @@ const IS_FINITE: Rule = (f32::is_finite, "finite numbers");
 const IS_SHARE: Rule = (|x| (0.0..=1.0).contains(&x), "numbers from 0 to 1");
 const IS_LIGHT: Rule = (|x| (0.0..=1e6).contains(&x), "numbers from 0 to 1e6");
 
-fn values(field: &str, values: &[f32], (holds, expected): Rule) -> Checked {
-    match values.iter().position(|x| !holds(*x)) {
+fn values<'a>(
+    field: &str,
+    values: impl IntoIterator<Item = &'a f32>,
+    (holds, expected): Rule,
+) -> Checked {
+    let mut numbered = values.into_iter().enumerate();
+    match numbered.find(|(_, x)| !holds(**x)) {
         None => Ok(()),
-        Some(i) => require(false, format!("{field}[{i}]"), expected, values[i]),
+        Some((i, found)) => require(false, format!("{field}[{i}]"), expected, found),
     }
 }
 
