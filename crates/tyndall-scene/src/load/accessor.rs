@@ -12,9 +12,6 @@ use super::{
     error::{Refusal, broken, called},
 };
 
-/// Most elements of an accessor without data of its own (sparse over zeros), so that a few bytes cannot claim gigabytes.
-const MAX_IMPLICIT_ELEMENTS: usize = 1 << 24;
-
 /// The component types that an attribute may have besides float.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Integers {
@@ -128,14 +125,11 @@ fn read_elements<T: Copy>(
             .iter()
             .map(&decode)
             .collect(),
-        None if count <= MAX_IMPLICIT_ELEMENTS => vec![zero; count],
         None => {
-            return Err(broken(
-                place,
-                format!(
-                    "at most {MAX_IMPLICIT_ELEMENTS} elements without a bufferView, found {count}"
-                ),
-            ));
+            buffers
+                .claim_zeros(count)
+                .map_err(|problem| broken(&place, problem))?;
+            vec![zero; count]
         }
     };
     if let Some(sparse) = accessor.sparse() {

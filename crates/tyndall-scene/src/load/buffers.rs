@@ -2,7 +2,7 @@
 
 use std::{
     borrow::Cow,
-    cell::OnceCell,
+    cell::{Cell, OnceCell},
     fs,
     path::{Path, PathBuf},
 };
@@ -13,12 +13,18 @@ use percent_encoding::percent_decode_str;
 
 use super::error::{Refusal, broken, called};
 
+/// Most elements of a file's accessors without data of their own (sparse over zeros), so that a few bytes cannot claim
+/// gigabytes.
+const MAX_ZEROS: usize = 1 << 24;
+
 /// The document's buffers, each loaded when it is first needed.
 pub(super) struct Buffers<'a> {
     document: &'a Document,
     glb_chunk: Option<&'a [u8]>,
     folder: PathBuf,
     loaded: Vec<OnceCell<Vec<u8>>>,
+    /// Elements that have no data of their own.
+    zeros: Cell<usize>,
 }
 
 /// An image's file.
@@ -41,7 +47,20 @@ impl<'a> Buffers<'a> {
             glb_chunk,
             folder: folder.map(Path::to_owned).unwrap_or_default(),
             loaded: vec![OnceCell::new(); document.buffers().len()],
+            zeros: Cell::new(0),
         }
+    }
+
+    /// Counts elements without data of their own against the file's limit, before anything is allocated for them.
+    pub(super) fn claim_zeros(&self, count: usize) -> Result<(), String> {
+        let zeros = self.zeros.get().saturating_add(count);
+        self.zeros.set(zeros);
+        if zeros <= MAX_ZEROS {
+            return Ok(());
+        }
+        Err(format!(
+            "brings the file to {zeros} elements without a bufferView, at most {MAX_ZEROS} are supported"
+        ))
     }
 
     /// The bytes of a view.

@@ -50,7 +50,19 @@ const DAMAGES: &[(&str, Damage, &str)] = &[
             d.json["accessors"][0] =
                 json!({"componentType": F32, "type": "VEC3", "count": 200_000_000});
         },
-        "accessor 0: at most 16777216 elements without a bufferView, found 200000000",
+        "accessor 0: brings the file to 200000000 elements without a bufferView, at most 16777216 are supported",
+    ),
+    (
+        "zeros out of nothing by many accessors",
+        |d| {
+            let zeros = json!({"componentType": F32, "type": "VEC3", "count": 10_000_000});
+            d.json["accessors"][0] = zeros.clone();
+            let accessors = d.json["accessors"].as_array_mut().unwrap();
+            accessors.push(zeros);
+            let normals = accessors.len() - 1;
+            d.primitive()["attributes"]["NORMAL"] = normals.into();
+        },
+        "brings the file to 20000000 elements without a bufferView, at most 16777216 are supported",
     ),
     (
         "accessor without elements",
