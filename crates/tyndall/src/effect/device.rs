@@ -1,5 +1,7 @@
 //! The effect of one device: pipelines and tables, and what is recorded.
 
+use std::sync::atomic::Ordering;
+
 use super::{
     options::{CreateError, EffectOptions},
     view::EffectView,
@@ -39,6 +41,12 @@ impl Effect {
             composite: Composite::new(device, &shared, format),
             shared,
         })
+    }
+
+    /// Pipelines compiled so far on behalf of prepared frames. It grows with the first light of each kind, technique and
+    /// medium's phase functions, and stays after that: where it grows while a game is played, a frame waits for a compiler.
+    pub fn pipelines(&self) -> usize {
+        self.shared.pipelines.load(Ordering::Relaxed)
     }
 
     /// Makes the textures of a camera of this size \[pixels].

@@ -2,7 +2,10 @@
 
 use std::{
     collections::HashMap,
-    sync::{Arc, Mutex, OnceLock, PoisonError},
+    sync::{
+        Arc, Mutex, OnceLock, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use super::{shader::Shader, shared::Shared, uniforms::LightVariant};
@@ -134,6 +137,8 @@ pub(crate) struct Recipe {
     reads_light: bool,
     /// Overrides besides the light's.
     constants: Vec<(&'static str, f64)>,
+    /// The effect's count of pipelines.
+    pipelines: Arc<AtomicUsize>,
 }
 
 /// Layouts of what the entry points of a recipe bind themselves.
@@ -261,6 +266,7 @@ impl<P: Pipeline> Program<P> {
             raster: Raster::full_screen(shared.output.into()),
             reads_light: true,
             constants: Vec::new(),
+            pipelines: Arc::clone(&shared.pipelines),
         };
         Self {
             recipe,
@@ -357,6 +363,7 @@ impl<P: Pipeline> Program<P> {
             constants.extend(&self.recipe.constants);
             constants.retain(|(name, _)| self.recipe.shader.reflection.has_override(name));
             let layout = &self.own(device).pipeline;
+            self.recipe.pipelines.fetch_add(1, Ordering::Relaxed);
             P::make(device, &self.recipe, layout, &constants, stencil)
         };
         made.entry((variant, stencil)).or_insert_with(make).clone()

@@ -1,5 +1,7 @@
 //! What all passes of an effect share.
 
+use std::sync::{Arc, atomic::AtomicUsize};
+
 use super::{bindings::Bindings, by_type::ByType, shader::Shaders};
 
 /// What all passes of an effect share.
@@ -10,6 +12,8 @@ pub(crate) struct Shared {
     pub(crate) shaders: Shaders,
     /// Programs, by their types.
     pub(super) by_type: ByType,
+    /// Pipelines made so far.
+    pub(crate) pipelines: Arc<AtomicUsize>,
 }
 
 impl Shared {
@@ -19,6 +23,7 @@ impl Shared {
             output,
             shaders: Shaders::default(),
             by_type: ByType::default(),
+            pipelines: Arc::default(),
         }
     }
 }

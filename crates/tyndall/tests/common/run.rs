@@ -73,6 +73,10 @@ impl<'a> Run<'a> {
             .prepare(device, queue, &mut self.view, &inputs, &frame, &frame_by)
     }
 
+    pub(crate) fn view(&mut self) -> &mut EffectView {
+        &mut self.view
+    }
+
     /// The output, as bits.
     pub(crate) fn frame(&mut self, stage: &Stage, technique: &Technique) -> Vec<[u32; 4]> {
         self.prepare(stage, technique);
