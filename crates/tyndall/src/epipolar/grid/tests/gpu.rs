@@ -168,7 +168,7 @@ fn cell_of(x: array<f32, 2>, level: u32) -> vec4f {
     let outward = mat2x3f(epipolar_outward(e, alphas.x), epipolar_outward(e, alphas.y));
     let a = rectify_side(outward, alphas, e.gamma_start + x[1] * e.gamma_step);
     let b = rectify_side(outward, alphas, e.gamma_start + (x[1] + 1.0) * e.gamma_step);
-    let node = rectify_cell(a, b, level);
+    let node = rectify_cell(a, b, level).x;
     return vec4f(f32(node & 0xffffu), f32(node >> 16u), used, 0.0);
 }";
 
