@@ -6,7 +6,9 @@ use super::{integrand::integrand, scene::CpuScene};
 use crate::{
     camera::Ray,
     light::LightModel,
-    physics::{quadrature::quadrature, transmittance::transmittance_integral},
+    physics::{
+        airlight::PointOnRay, quadrature::quadrature, transmittance::transmittance_integral,
+    },
     shadow::Shade,
 };
 
@@ -114,8 +116,8 @@ pub(crate) struct Integral<'a> {
     model: &'a LightModel<'a>,
     scene: &'a CpuScene<'a>,
     tolerance: f64,
-    /// The point nearest to the light: distance along the ray, and from the light as its radius softens it \[m].
-    nearest: Option<[f64; 2]>,
+    /// The light, unless it is directional.
+    light: Option<PointOnRay>,
 }
 
 impl<'a> Integral<'a> {
@@ -125,25 +127,22 @@ impl<'a> Integral<'a> {
         scene: &'a CpuScene<'a>,
         tolerance: f64,
     ) -> Self {
-        let nearest = model.position().map(|position| {
-            let to_light = position - ray.origin;
-            let projection = to_light.dot(ray.direction);
-            let height = (to_light - projection * ray.direction).length();
-            [projection, height.hypot(model.radius())]
-        });
+        let light = model
+            .position()
+            .map(|position| PointOnRay::new(position - ray.origin, ray.direction, model.radius()));
         Self {
             ray,
             model,
             scene,
             tolerance,
-            nearest,
+            light,
         }
     }
 
     pub(crate) fn over(&self, [a, b]: [f64; 2]) -> DVec3 {
         let optics = &self.scene.optics;
         let f = |s| integrand(self.ray, s, self.model, optics);
-        match self.nearest {
+        match self.light {
             None if self.model.is_plain() => {
                 // Constant along the ray but for extinction.
                 let path = optics
@@ -153,11 +152,11 @@ impl<'a> Integral<'a> {
                 f(0.0) * DVec3::from(path)
             }
             None => quadrature([a, b], self.tolerance, &f),
-            Some([projection, height]) => {
-                let angle = |s: f64| ((s - projection) / height).atan();
-                quadrature([angle(a), angle(b)], self.tolerance, &|xi: f64| {
-                    let tan = xi.tan();
-                    f(projection + height * tan) * (height * (1.0 + tan * tan))
+            Some(light) => {
+                let turn = light.turn([a, b]);
+                quadrature([0.0, turn], self.tolerance, &|angle: f64| {
+                    let [s, ds] = light.turned(a, angle);
+                    f(s.min(b)) * ds
                 })
             }
         }

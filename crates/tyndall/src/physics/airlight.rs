@@ -72,6 +72,21 @@ impl PointOnRay {
         (s - self.projection).hypot(self.height)
     }
 
+    /// The angle by which the light ray turns while the view ray goes from distance `a` to `b` \[m], in [0, pi): the whole
+    /// range of the substitution of Kulla & Fajardo 2012, `s = projection + height tan(xi)`.
+    pub(crate) fn turn(&self, [a, b]: [f64; 2]) -> f64 {
+        let [x_a, x_b] = [a, b].map(|s| s - self.projection);
+        (self.height * (b - a)).atan2(self.height * self.height + x_a * x_b)
+    }
+
+    /// The distance `s` where the light ray has turned by an angle since distance `a`, and `ds` by the angle there \[m]. The
+    /// sum of two tangents, without cancellation where the light is far from both.
+    pub(crate) fn turned(&self, a: f64, angle: f64) -> [f64; 2] {
+        let (x, t) = (a - self.projection, angle.tan());
+        let s = a + t * (self.height * self.height + x * x) / (self.height - x * t);
+        [s, self.distance(s).powi(2) / self.height]
+    }
+
     /// `tan(phi / 2)` at distance `s`, without cancellation before the light.
     fn tangent(&self, s: f64) -> f64 {
         let (x, d) = (s - self.projection, self.distance(s));
@@ -210,6 +225,36 @@ mod tests {
     use std::ops::RangeInclusive;
 
     use super::*;
+
+    /// A whole stretch is as long as it is, wherever the light: beside it, far before it, far behind it.
+    #[test]
+    fn light_rays_turn_over_the_whole_stretch() {
+        for (projection, height, stretch) in [
+            (3.0, 2.0, [0.0, 10.0]),
+            (3.0, 1e-6, [0.0, 10.0]),
+            (-4.0, 0.1, [1.0, 1e6]),
+            (5e8, 3e4, [0.0, 2e-6]),
+            (-5e8, 3e4, [1.0, 1.0 + 1e-6]),
+            (5e8, 1e-3, [0.0, 1.0]),
+        ] {
+            let light = PointOnRay { projection, height };
+            let turn = light.turn(stretch);
+            let [from, to] = stretch;
+            let error = |s: f64, expected: f64| (s - expected).abs() / (to - from);
+            let [start, end] = [0.0, turn].map(|angle| light.turned(from, angle)[0]);
+            assert!(
+                error(start, from) < 1e-9 && error(end, to) < 1e-9,
+                "{start} {end}"
+            );
+            let middle = 0.5 * turn;
+            let [s, ds] = light.turned(from, middle);
+            let step = 1e-4 * turn;
+            let [before, after] = [-step, step].map(|d| light.turned(from, middle + d)[0]);
+            assert!((from..=to).contains(&s), "{s}");
+            let slope = (after - before) / (2.0 * step);
+            assert!((slope - ds).abs() < 1e-4 * ds, "{slope} {ds}");
+        }
+    }
 
     /// Phase functions and the largest error of their tables, relative to the airlight of the whole ray.
     /// Measured over 20,000 stretches: 1.6e-4, 2.2e-4, 1.5e-4, 3.9e-4, 2.8e-3, 1.3e-3; here over 4,000.

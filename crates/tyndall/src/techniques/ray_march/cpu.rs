@@ -99,7 +99,9 @@ struct ByAngle {
     light: PointOnRay,
     /// The steps that are taken like this.
     range: Range<u32>,
+    /// The distance at which they begin \[m].
     start: f64,
+    /// Of each.
     turn: f64,
 }
 
@@ -112,11 +114,8 @@ impl Steps {
                 Spacing::Equal => peak([a, length], params.steps, light),
                 Spacing::Equiangular => 0..params.steps,
             };
-            let angle = |step: u32| {
-                ((a + f64::from(step) * length - light.projection) / light.height).atan()
-            };
-            let (start, end) = (angle(range.start), angle(range.end));
-            let turn = (end - start) / f64::from(range.len().max(1) as u32);
+            let [start, end] = [range.start, range.end].map(|step| a + f64::from(step) * length);
+            let turn = light.turn([start, end]) / f64::from(range.len().max(1) as u32);
             ByAngle {
                 light,
                 range,
@@ -135,12 +134,9 @@ impl Steps {
     fn step(&self, i: u32) -> (f64, f64) {
         match &self.by_angle {
             Some(by) if by.range.contains(&i) => {
-                let PointOnRay { projection, height } = by.light;
-                let tan = (by.start + (f64::from(i - by.range.start) + 0.5) * by.turn).tan();
-                (
-                    projection + height * tan,
-                    height * (1.0 + tan * tan) * by.turn,
-                )
+                let angle = (f64::from(i - by.range.start) + 0.5) * by.turn;
+                let [s, ds] = by.light.turned(by.start, angle);
+                (s, ds * by.turn)
             }
             _ => (self.start + (f64::from(i) + 0.5) * self.length, self.length),
         }
