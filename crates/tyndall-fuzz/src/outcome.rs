@@ -1,6 +1,6 @@
 //! Ends of an input.
 
-/// How an input ended.
+/// The end of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// With an error that says what is wrong.

@@ -36,7 +36,7 @@ fn run(target: &str, body: impl Fn(&[u8]) -> Outcome) {
         ends.push(body(&bytes));
         assert!(start.elapsed() < LIMIT, "{}", file.display());
     }
-    // What no longer gets anywhere tests nothing.
+    // At least one has to get to the end, for inputs that are all refused test nothing.
     assert!(ends.contains(&Outcome::Computed), "{target}: {ends:?}");
 }
 

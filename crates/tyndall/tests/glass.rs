@@ -6,7 +6,7 @@ mod common;
 
 use std::ops::Range;
 
-use common::{SIZE, Stage, StageLight, gpu as on, noise, stages, technique};
+use common::{Random, SIZE, Stage, StageLight, gpu as on, stages, technique};
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 use tyndall::{
     camera::CameraRays,
@@ -23,20 +23,6 @@ const LAYERS: u32 = 4;
 /// Seeds of the panes that are tried, and of the 2,000 panes that are tried on request: three a seed on average.
 const PANES: Range<u32> = 0..8;
 const MANY_PANES: Range<u32> = 8..680;
-
-/// Numbers in [0, 1) that look random, one after another.
-struct Random(u32);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 += 1;
-        noise(self.0).into()
-    }
-
-    fn vector(&mut self, size: f64) -> DVec3 {
-        DVec3::from_array([(); 3].map(|()| size * (2.0 * self.next() - 1.0)))
-    }
-}
 
 /// A parallelogram of one tint.
 struct Pane {
@@ -90,7 +76,7 @@ fn texel_panes(face: &Face, panes: &[Pane], [x, y]: [u32; 2]) -> Vec<(f64, [f32;
     passed
 }
 
-/// What a light's map holds of the panes; the first of them blocks where `is_blocking`.
+/// Draws the panes into a light's maps; the first of them blocks where `is_blocking`.
 fn maps(light: &Light, panes: &[Pane], is_blocking: bool) -> StageLight {
     let projection = light.shadow.expect("a light that casts shadows");
     let faces = faces(&light.emitter, &projection).expect("a projection of the light");
@@ -177,7 +163,7 @@ fn worst_pixel(found: &Picture, truth: &Picture) -> f64 {
     pairs.map(error).fold(0.0, f64::max)
 }
 
-/// What random panes are off by at most: in the mean of a picture, and in one pixel of `min-max`.
+/// The largest errors of random panes: in the mean of a picture, and in one pixel of `min-max`.
 #[derive(Debug, Default)]
 struct Worst {
     min_max: f64,
@@ -252,7 +238,7 @@ fn worst_of_panes(seeds: Range<u32>) -> Option<Worst> {
     Some(worst)
 }
 
-/// What is passed over block by block is what the map holds, point by point.
+/// Blocks that are passed over at once hold what the map holds, point by point.
 #[test]
 fn shades_of_panes_are_the_maps() {
     let stages = shadowed_stages();

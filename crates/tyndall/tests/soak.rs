@@ -7,7 +7,7 @@ mod common;
 
 use std::sync::{Arc, Mutex};
 
-use common::{Stage, crowd, gpu as on, media, noise, run::Run, steps, technique};
+use common::{Random, Stage, crowd, gpu as on, media, run::Run, steps, technique};
 use tyndall::{
     Effect, PrepareError,
     techniques::{Technique, Value},
@@ -43,17 +43,6 @@ const REUSE: [Option<Reuse>; 2] = [
         show: ReuseShow::Light,
     }),
 ];
-
-/// Numbers that look random, one after another.
-struct Dice(u32);
-
-impl Dice {
-    /// One of `count` numbers from 0 on.
-    fn roll(&mut self, count: usize) -> usize {
-        self.0 += 1;
-        (noise(self.0) * count as f32) as usize % count
-    }
-}
 
 /// A stage with these of its lights alone.
 fn with_lights(stage: &Stage, chosen: &[usize]) -> Stage {
@@ -131,7 +120,7 @@ fn soak(gpu: &TestDevice, crowds: &[Stage], frames: u32, settled: u32) {
     let effect = on::effect(gpu);
     let casts = warmed_up(gpu, &effect, crowds);
     let warm = effect.pipelines();
-    let mut dice = Dice(1);
+    let mut dice = Random(1);
     let mut size = SIZES[0];
     let mut run = Run::sized(size, gpu, &effect, None);
     let (mut before, mut largest) = (None, 0);
@@ -151,7 +140,7 @@ fn soak(gpu: &TestDevice, crowds: &[Stage], frames: u32, settled: u32) {
         }
         let crowd = &crowds[dice.roll(crowds.len())];
         let stage = sized(with_lights(crowd, &chosen), size);
-        // The same frame again and again keeps its pixels.
+        // Reuse keeps the pixels of a frame that is drawn again.
         for _ in 0..1 + dice.roll(3) {
             let pixels = run.frame(&stage, &cast.technique);
             let is_finite = |bits: &u32| f32::from_bits(*bits).is_finite();
@@ -223,7 +212,7 @@ fn a_lost_device_is_an_error_and_a_new_one_draws() {
     let refused = run.prepare_with(&stage, &min_max, None);
     let output = run.view().output().texture().clone();
     let read = lost.read_texture::<[f32; 4]>(&output);
-    // What is prepared goes nowhere, as all calls on a lost device; who asks for the picture is told.
+    // Preparing succeeds and does nothing, as all calls on a lost device; reading the picture fails.
     assert_eq!(refused, Ok(()));
     assert!(read.is_err());
     let errors = errors.lock().expect("nobody panics");

@@ -1,4 +1,4 @@
-//! What drivers write to standard error, held back while nothing is wrong.
+//! Holds back what drivers write to standard error while nothing is wrong.
 //!
 //! Drivers and the layers between write there as they please, even where all is well: Mesa's layer that chooses a device asks
 //! for a desktop, and says `error:` where there is none.
@@ -16,7 +16,7 @@ use std::{
 static TURN: Mutex<()> = Mutex::new(());
 
 /// Runs `action`; what is written to standard error meanwhile, by whichever code of this process, is dropped if it succeeds.
-/// Where it fails or panics, each line of it is printed behind `driver: `.
+/// Each line of it is printed behind `driver: ` where the action fails or panics.
 #[cfg(unix)]
 pub(super) fn quiet_unless_it_fails<T, E>(action: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);

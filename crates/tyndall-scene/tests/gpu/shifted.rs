@@ -1,4 +1,4 @@
-//! What the tracer sees with the centres of pixels and texels shifted.
+//! Traces cameras and maps with the centres of pixels and texels shifted.
 
 use glam::{DMat4, DVec3};
 use tyndall::{

@@ -1,4 +1,4 @@
-//! What a rasteriser may round: it moves vertices to a grid of sub-pixels, the device's own.
+//! Measures what a rasteriser may round: it moves vertices to a grid of sub-pixels, the device's own.
 //!
 //! Vulkan asks for 4 bits of sub-pixels at least (`subPixelPrecisionBits`), and SwiftShader has no more; lavapipe has 8. A vertex
 //! moves by half a step at most, and so does any point of a triangle, which is a mean of its corners: what a pixel shows is what
@@ -34,7 +34,7 @@ pub(crate) fn half_step(gpu: &TestDevice) -> f64 {
     moved.map(|row| offset(row).abs()).fold(0.0, f64::max) + 1.0 / STEPS
 }
 
-/// Which rows' edges are left of their pixels' centres, says the device.
+/// Asks the device which rows' edges are left of their pixels' centres.
 fn edges(gpu: &TestDevice) -> Vec<bool> {
     let module = gpu
         .device

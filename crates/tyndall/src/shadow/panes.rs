@@ -1,4 +1,4 @@
-//! What blocks of a glass map hold: most of a map holds no tint, or one, and a walk passes over it block by block.
+//! Sums up a glass map by blocks: most of a map holds no tint, or one, and a walk passes over it block by block.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -17,9 +17,9 @@ pub(super) struct Panes {
 /// Depths are 1 nearest to the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
-    /// Of the layers that tint; 1 where there is none.
+    /// The farthest layer that tints; 1 where there is none.
     farthest: f64,
-    /// Of the layers that tint; 0 where there is none.
+    /// The nearest layer that tints; 0 where there is none.
     nearest: f64,
     /// Behind all of the glass; `None` where texels differ.
     tint: Option<DVec3>,

@@ -97,7 +97,7 @@ pub(crate) fn cpu_inputs(frame: &Frame, inputs: &CpuInputs<'_>) -> Checked {
     Ok(())
 }
 
-/// What values have to be, and in words.
+/// A condition that values have to meet, and its words.
 type Rule = (fn(f32) -> bool, &'static str);
 
 const IS_FINITE: Rule = (f32::is_finite, "finite numbers");

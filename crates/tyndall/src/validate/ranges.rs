@@ -1,4 +1,4 @@
-//! How large and small a frame's numbers may be: squares, and their products with coefficients, have to stay numbers in f32.
+//! Limits of a frame's numbers: squares, and their products with coefficients, have to stay numbers in f32.
 
 use super::require::{Checked, require};
 use crate::{

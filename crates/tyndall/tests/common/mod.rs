@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use glam::{Mat4, Vec3};
+use glam::{DVec3, Mat4, Vec3};
 use tyndall::{
     camera::CameraRays,
     cpu::{self, CpuInputs, CpuLightInputs, GlassMap, LightTexture, ShadowMap},
@@ -48,6 +48,26 @@ pub(crate) fn noise(seed: u32) -> f32 {
     let mut x = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     x = ((x >> ((x >> 28) + 4)) ^ x).wrapping_mul(277_803_737);
     ((x >> 22) ^ x) as f32 / 4_294_967_296.0
+}
+
+/// Numbers in [0, 1) that look random, one after another.
+pub(crate) struct Random(pub(crate) u32);
+
+impl Random {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 += 1;
+        noise(self.0).into()
+    }
+
+    /// One of `count` numbers from 0 on.
+    pub(crate) fn roll(&mut self, count: usize) -> usize {
+        (self.next() * count as f64) as usize % count
+    }
+
+    /// A vector within a cube of this half size.
+    pub(crate) fn vector(&mut self, size: f64) -> DVec3 {
+        DVec3::from_array([(); 3].map(|()| size * (2.0 * self.next() - 1.0)))
+    }
 }
 
 /// A technique by name, with parameters.

@@ -101,7 +101,7 @@ struct ByAngle {
     range: Range<u32>,
     /// The distance at which they begin \[m].
     start: f64,
-    /// Of each.
+    /// The angle of each.
     turn: f64,
 }
 
