@@ -117,6 +117,28 @@ impl Camera {
             depth_range: DepthRange::Reversed,
         }
     }
+
+    /// The same camera with the centres of the pixels of a picture of `size` moved by so many pixels, to the right and up, as
+    /// temporal antialiasing does.
+    #[must_use]
+    pub fn jittered(&self, size: [u32; 2], pixels: [f64; 2]) -> Self {
+        let mut jittered = *self;
+        let (Projection::Perspective {
+            half_extent,
+            center,
+            ..
+        }
+        | Projection::Orthographic {
+            half_extent,
+            center,
+            ..
+        }) = &mut jittered.projection;
+        for axis in 0..2 {
+            let pixel = 2.0 * f64::from(half_extent[axis]) / f64::from(size[axis]);
+            center[axis] += (pixel * pixels[axis]) as f32;
+        }
+        jittered
+    }
 }
 
 /// A light, the map that holds its shadows, and the texture it shines through.

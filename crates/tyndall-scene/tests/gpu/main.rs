@@ -9,7 +9,6 @@ mod known;
 mod lit;
 mod scenes;
 mod shifted;
-mod snapping;
 mod support;
 mod twin;
 mod whole;

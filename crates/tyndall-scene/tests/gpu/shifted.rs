@@ -1,32 +1,12 @@
-//! Traces cameras and maps with the centres of pixels and texels shifted.
+//! Traces maps with the centres of texels shifted.
 
 use glam::{DMat4, DVec3};
 use tyndall::{
     cpu::{GlassMap, ShadowMap},
-    frame::{Camera, Emitter, Projection, ShadowProjection},
+    frame::{Emitter, ShadowProjection},
     shadow,
 };
 use tyndall_scene::trace::{GLASS_LAYERS, Tracer};
-
-/// A camera whose pixels' centres are shifted.
-pub(crate) fn shifted_camera(camera: &Camera, size: [u32; 2], shift: [f64; 2]) -> Camera {
-    let mut shifted = *camera;
-    let (Projection::Perspective {
-        half_extent,
-        center,
-        ..
-    }
-    | Projection::Orthographic {
-        half_extent,
-        center,
-        ..
-    }) = &mut shifted.projection;
-    for axis in 0..2 {
-        let pixel = 2.0 * half_extent[axis] / size[axis] as f32;
-        center[axis] += pixel * shift[axis] as f32;
-    }
-    shifted
-}
 
 /// The projections of a map's faces, one by one, their texels' centres shifted.
 fn shifted_faces(

@@ -5,12 +5,14 @@ use tyndall_scene::{
     gpu::{GBufferTargets, GlassMapTarget, ShadowMapTarget},
     trace::{GBuffer, Tracer},
 };
-use tyndall_testkit::device::device_or_skip;
+use tyndall_testkit::{
+    device::device_or_skip,
+    snapping::{nearest, shifts},
+};
 
 use crate::{
     scenes::{cameras, clutter, lights_with_maps},
-    shifted::{shifted_camera, shifted_glass, shifted_map},
-    snapping::{nearest, shifts},
+    shifted::{shifted_glass, shifted_map},
     support::{channels, differing, read, record, renderer},
 };
 
@@ -21,14 +23,14 @@ fn g_buffers_are_the_tracers() {
     };
     let scene = clutter(200);
     let (renderer, tracer) = (renderer(gpu, &scene), Tracer::new(&scene));
-    let (size, shifts) = ([160, 120], shifts(gpu, 5));
+    let (size, shifts) = ([160, 120], shifts(gpu, 5).unwrap());
     let targets = GBufferTargets::new(&gpu.device, size).unwrap();
     for (name, camera) in cameras() {
         record(gpu, |encoder| {
             renderer.g_buffer(encoder, &targets, &camera, None)
         });
         let shifted = |&shift: &_| {
-            let camera = shifted_camera(&camera, size, shift);
+            let camera = camera.jittered(size, shift);
             tracer.g_buffer(&camera, size, &|_, _| ())
         };
         let expected: Vec<GBuffer> = shifts.iter().map(shifted).collect();
@@ -89,7 +91,7 @@ fn light_maps_are_the_tracers() {
     };
     let scene = clutter(200);
     let (renderer, tracer) = (renderer(gpu, &scene), Tracer::new(&scene));
-    let shifts = shifts(gpu, 3);
+    let shifts = shifts(gpu, 3).unwrap();
     for (name, emitter, projection) in lights_with_maps() {
         let size = [128, 96];
         let size = if matches!(projection, ShadowProjection::Cube { .. }) {

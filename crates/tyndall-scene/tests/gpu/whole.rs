@@ -20,11 +20,11 @@ use tyndall_scene::{
 use tyndall_testkit::{
     device::{TestDevice, device_or_skip},
     skip::skip,
+    snapping::{nearest, shifts},
 };
 
 use crate::{
-    shifted::{shifted_camera, shifted_glass, shifted_map},
-    snapping::{nearest, shifts},
+    shifted::{shifted_glass, shifted_map},
     support::{channels, color_target, differing, read, record, rel_mae, renderer},
 };
 
@@ -101,7 +101,7 @@ fn traced(tracer: &Tracer, frame: &Frame, shift: [f64; 2]) -> (Vec<f32>, Vec<f32
         glass: glass.as_ref(),
         texture: None,
     };
-    let camera = shifted_camera(&frame.camera, SIZE, shift);
+    let camera = frame.camera.jittered(SIZE, shift);
     let g_buffer = tracer.g_buffer(&camera, SIZE, &|_, _| ());
     let image = shade(&g_buffer, frame, &[inputs], None);
     (image.concat(), g_buffer.depth)
@@ -120,7 +120,8 @@ fn check(gpu: &TestDevice, name: &str, scene: &Scene, bound: f64) {
     );
     let [found, found_depth] = rasterised(gpu, &renderer, &frame);
     let shifted = |shift| traced(&tracer, &frame, shift);
-    let (expected, depths): (Vec<_>, Vec<_>) = shifts(gpu, 3).into_iter().map(shifted).unzip();
+    let (expected, depths): (Vec<_>, Vec<_>) =
+        shifts(gpu, 3).unwrap().into_iter().map(shifted).unzip();
     let (edges, rest) = differing(&found_depth, &nearest(&found_depth, &depths), 1e-5);
     let error = rel_mae(&found, &nearest(&found, &expected), SIZE);
     eprintln!(
