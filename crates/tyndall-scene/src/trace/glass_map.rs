@@ -16,7 +16,8 @@ pub const GLASS_LAYERS: u32 = 4;
 
 impl Tracer {
     /// The tinted glass that light passes before the first opaque surface: at each texel's centre up to `layers` panes,
-    /// nearest to the light first. Panes beyond that many are left out. `None` where the scene has no tinted glass.
+    /// nearest to the light first. Panes beyond that many are left out, and so are layers that are empty everywhere, but for
+    /// the first. `None` where the scene has no tinted glass.
     pub fn glass_map(
         &self,
         emitter: &Emitter,
@@ -29,42 +30,49 @@ impl Tracer {
             return None;
         }
         let rays = MapRays::new(emitter, projection, size);
-        // Most texels see no glass: the panes are gathered first and strewn over an empty map.
-        let panes = rays.flat_map_texels(progress, |texel| {
-            let panes = self.panes(&texel.ray, texel.length);
-            let stored = |pane: &GlassHit| {
-                let [r, g, b] = pane.tint.as_vec3().to_array();
-                [r, g, b, rays.stored_depth(&texel, pane.distance)]
-            };
-            let shown = panes.iter().take(layers as usize).enumerate();
-            shown
-                .map(|(layer, pane)| (texel.face, layer, texel.index, stored(pane)))
-                .collect::<Vec<_>>()
-        });
-        let plane = size[0] as usize * size[1] as usize;
-        let count = rays.face_count() * layers as usize * plane;
-        let mut texels = vec![[1.0, 1.0, 1.0, rays.far_value()]; count];
-        for (face, layer, index, texel) in panes {
-            texels[(face * layers as usize + layer) * plane + index] = texel;
+        let empty = [1.0, 1.0, 1.0, rays.far_value()];
+        let [width, height] = size.map(|n| n as usize);
+        // Layer by layer, as many as the row needs.
+        let row_of_layers = |row: usize| {
+            let (mut held, mut panes) = (Vec::new(), Vec::new());
+            for (column, texel) in rays.row(row).enumerate() {
+                self.find_panes(&texel.ray, texel.length, &mut panes);
+                for (layer, pane) in panes.iter().take(layers as usize).enumerate() {
+                    let [r, g, b] = pane.tint.as_vec3().to_array();
+                    let first = layer * width;
+                    held.resize(held.len().max(first + width), empty);
+                    held[first + column] = [r, g, b, rays.stored_depth(&texel, pane.distance)];
+                }
+            }
+            held
+        };
+        let rows = rays.map_rows(progress, row_of_layers);
+        let most = rows.iter().map(|row| row.len() / width).max();
+        let layers = most.unwrap_or(0).max(1);
+        let mut texels = vec![empty; rays.face_count() * layers * height * width];
+        for (row, held) in rows.iter().enumerate() {
+            for (layer, held) in held.chunks_exact(width).enumerate() {
+                let first = ((row / height * layers + layer) * height + row % height) * width;
+                texels[first..first + width].copy_from_slice(held);
+            }
         }
         Some(GlassMap {
             size,
-            layers,
+            layers: layers as u32,
             texels,
         })
     }
 
-    /// Tinted glass in front of the first opaque surface, nearest first.
-    fn panes(&self, ray: &Ray, length: f64) -> Vec<GlassHit> {
-        let mut panes = Vec::new();
-        self.glass(ray, [0.0, length], &mut panes);
+    /// Finds the tinted glass in front of the first opaque surface, nearest first.
+    fn find_panes(&self, ray: &Ray, length: f64, panes: &mut Vec<GlassHit>) {
+        panes.clear();
+        self.glass(ray, [0.0, length], panes);
         if !panes.is_empty() {
             if let Some(blocker) = self.closest(ray, [0.0, length]) {
                 panes.retain(|pane| pane.distance < blocker.distance);
             }
             panes.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         }
-        panes
     }
 }
 
@@ -97,7 +105,7 @@ mod tests {
         panes.materials.push(floor.materials.remove(0));
         panes.meshes[0].primitives.extend(mesh.primitives);
         let tracer = Tracer::new(&panes);
-        for (layers, expected) in [(4, vec![0.75, 0.625, 0.375, 0.0]), (2, vec![0.75, 0.625])] {
+        for (layers, expected) in [(4, vec![0.75, 0.625, 0.375]), (2, vec![0.75, 0.625])] {
             let map = tracer
                 .glass_map(
                     &SUN_OVERHEAD,
@@ -107,17 +115,13 @@ mod tests {
                     &|_, _| (),
                 )
                 .unwrap();
-            assert_eq!(map.texels.len(), 16 * layers as usize);
+            assert_eq!(map.layers as usize, expected.len(), "no layer is empty");
+            assert_eq!(map.texels.len(), 16 * expected.len());
             for (layer, expected) in expected.into_iter().enumerate() {
                 // A texel over the panes, on their diagonal: no pane counts twice there.
                 let [r, g, b, depth] = map.texels[16 * layer + 10];
                 assert!((depth - expected).abs() < 1e-6, "layer {layer}: {depth}");
-                let tint = if expected > 0.0 {
-                    [0.5, 0.25, 0.125]
-                } else {
-                    [1.0; 3]
-                };
-                assert_eq!([r, g, b], tint);
+                assert_eq!([r, g, b], [0.5, 0.25, 0.125]);
                 assert_eq!(
                     map.texels[16 * layer],
                     [1.0, 1.0, 1.0, 0.0],

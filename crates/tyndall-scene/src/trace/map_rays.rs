@@ -21,9 +21,7 @@ pub(super) struct MapRays {
 
 /// A texel and the ray through its centre.
 pub(super) struct Texel {
-    pub(super) face: usize,
-    /// Index within its face, row by row.
-    pub(super) index: usize,
+    face: usize,
     /// Starts on the near plane.
     pub(super) ray: Ray,
     /// Distance to the far plane \[m].
@@ -62,29 +60,28 @@ impl MapRays {
         }
     }
 
-    /// Collects what `values` gives for all texels, face by face, row by row.
-    pub(super) fn flat_map_texels<T: Send, I: IntoIterator<Item = T>>(
+    /// What `value` gives for every row, face by face.
+    pub(super) fn map_rows<T: Send>(
         &self,
         progress: Progress<'_>,
-        values: impl Fn(Texel) -> I + Sync,
+        value: impl Fn(usize) -> T + Sync,
     ) -> Vec<T> {
-        let [width, height] = self.size.map(|n| n as usize);
-        let total = (self.faces.len() * width * height) as u64;
+        let [width, height] = self.size.map(u64::from);
+        let total = self.faces.len() as u64 * width * height;
         let done = AtomicU64::new(0);
-        let row_of_values = |row: usize| -> Vec<T> {
-            let first = row % height * width;
-            let texels = (first..first + width).map(|index| self.texel(row / height, index));
-            let values = texels.flat_map(&values).collect();
-            progress(
-                done.fetch_add(width as u64, Ordering::Relaxed) + width as u64,
-                total,
-            );
-            values
+        let counted = |row: usize| {
+            let value = value(row);
+            progress(done.fetch_add(width, Ordering::Relaxed) + width, total);
+            value
         };
-        (0..self.faces.len() * height)
-            .into_par_iter()
-            .flat_map_iter(row_of_values)
-            .collect()
+        let rows = 0..self.faces.len() * height as usize;
+        rows.into_par_iter().map(counted).collect()
+    }
+
+    /// A row's texels, from the left.
+    pub(super) fn row(&self, row: usize) -> impl Iterator<Item = Texel> {
+        let height = self.size[1] as usize;
+        (0..self.size[0] as usize).map(move |x| self.texel(row / height, [x, row % height]))
     }
 
     /// Number of faces: 1 or 6; 0 where a cube is asked for of a light that has no position.
@@ -92,8 +89,7 @@ impl MapRays {
         self.faces.len()
     }
 
-    fn texel(&self, face: usize, index: usize) -> Texel {
-        let (x, y) = (index % self.size[0] as usize, index / self.size[0] as usize);
+    fn texel(&self, face: usize, [x, y]: [usize; 2]) -> Texel {
         let size = DVec2::from(self.size.map(f64::from));
         let ndc = DVec2::new(2.0, -2.0) * ((DVec2::new(x as f64, y as f64) + 0.5) / size - 0.5);
         let world_from_clip = self.faces[face].world_from_clip;
@@ -101,7 +97,6 @@ impl MapRays {
         let length = (to - from).length();
         Texel {
             face,
-            index,
             ray: Ray {
                 origin: from,
                 direction: (to - from) / length,

@@ -5,7 +5,10 @@ use tyndall::{
     frame::{Emitter, ShadowProjection},
 };
 
-use super::{map_rays::MapRays, tracer::Tracer};
+use super::{
+    map_rays::{MapRays, Texel},
+    tracer::Tracer,
+};
 
 impl Tracer {
     /// The light's shadow map, `size` texels a face: in each texel the stored depth (clip z / w) of the first opaque surface
@@ -20,14 +23,15 @@ impl Tracer {
         progress: Progress<'_>,
     ) -> ShadowMap {
         let rays = MapRays::new(emitter, projection, size);
-        let depth = rays.flat_map_texels(progress, |texel| {
-            [self
-                .closest(&texel.ray, [0.0, texel.length])
-                .map_or(rays.far_value(), |hit| {
-                    let corners = self.geometry.positions[hit.triangle];
-                    rays.nearest_depth(&texel, hit.distance, corners.map(|p| p.as_dvec3()))
-                })]
-        });
+        let depth = |texel: Texel| match self.closest(&texel.ray, [0.0, texel.length]) {
+            Some(hit) => {
+                let corners = self.geometry.positions[hit.triangle];
+                rays.nearest_depth(&texel, hit.distance, corners.map(|p| p.as_dvec3()))
+            }
+            None => rays.far_value(),
+        };
+        let rows = rays.map_rows(progress, |row| rays.row(row).map(depth).collect::<Vec<_>>());
+        let depth = rows.concat();
         ShadowMap { size, depth }
     }
 }

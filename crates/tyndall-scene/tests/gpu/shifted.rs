@@ -54,7 +54,7 @@ pub(crate) fn shifted_map(
     }
 }
 
-/// A light's traced coloured glass, where there is any.
+/// A light's traced coloured glass, where there is any, in as many layers as a renderer may have.
 pub(crate) fn shifted_glass(
     tracer: &Tracer,
     emitter: &Emitter,
@@ -62,14 +62,20 @@ pub(crate) fn shifted_glass(
     size: [u32; 2],
     shift: [f64; 2],
 ) -> Option<GlassMap> {
-    let faces = shifted_faces(emitter, projection, size, shift);
-    let maps: Option<Vec<GlassMap>> = faces
-        .iter()
-        .map(|face| tracer.glass_map(emitter, face, size, GLASS_LAYERS, &|_, _| ()))
-        .collect();
+    let (ShadowProjection::Single { reversed_depth, .. }
+    | ShadowProjection::Cube { reversed_depth, .. }) = *projection;
+    let empty = [1.0, 1.0, 1.0, if reversed_depth { 0.0 } else { 1.0 }];
+    let count = (GLASS_LAYERS * size[0] * size[1]) as usize;
+    let mut texels = Vec::new();
+    for face in shifted_faces(emitter, projection, size, shift) {
+        let map = tracer.glass_map(emitter, &face, size, GLASS_LAYERS, &|_, _| ())?;
+        let missing = count - map.texels.len();
+        texels.extend(map.texels);
+        texels.extend(std::iter::repeat_n(empty, missing));
+    }
     Some(GlassMap {
         size,
         layers: GLASS_LAYERS,
-        texels: maps?.into_iter().flat_map(|map| map.texels).collect(),
+        texels,
     })
 }

@@ -312,10 +312,8 @@ pub(super) fn picture_point(clip: DVec4) -> Option<DVec2> {
 }
 
 pub(super) fn texel_index(uv: DVec2, size: [u32; 2]) -> Option<usize> {
-    let texel = (uv * DVec2::new(f64::from(size[0]), f64::from(size[1]))).floor();
-    let inside = texel.x >= 0.0
-        && texel.y >= 0.0
-        && texel.x < f64::from(size[0])
-        && texel.y < f64::from(size[1]);
-    inside.then(|| texel.y as usize * size[0] as usize + texel.x as usize)
+    let [width, height] = size.map(f64::from);
+    let (x, y) = (uv.x * width, uv.y * height);
+    let inside = x >= 0.0 && y >= 0.0 && x < width && y < height;
+    inside.then(|| y as usize * size[0] as usize + x as usize)
 }

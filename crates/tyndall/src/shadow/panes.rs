@@ -1,13 +1,20 @@
-//! Sums up a glass map by blocks: most of a map holds no tint, or one, and a walk passes over it block by block.
+//! Sums up a glass map by blocks, and these by larger ones: most of a map holds no tint, or one, and a walk passes over it
+//! block by block.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{inputs::GlassMap, physics::reals};
 
-/// Blocks of a glass map; the twin of the light volumes' `panes.wesl`.
+/// Blocks of a glass map, the largest first: each level is made of the next one's. None where texels do not fill blocks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Panes {
+    levels: Vec<Level>,
+}
+
+/// Blocks of one size.
+#[derive(Clone, Debug)]
+pub(super) struct Level {
     /// Blocks a face.
     pub(super) size: [u32; 2],
     /// Face by face, row by row.
@@ -64,45 +71,61 @@ impl Block {
 }
 
 impl Panes {
-    /// Texels a side of a block.
-    const BLOCK: u32 = 16;
-
     /// `near_is_one` turns a depth of the map's own convention.
     pub(super) fn new(glass: &GlassMap, near_is_one: impl Fn(f32) -> f64 + Sync) -> Self {
-        // Blocks must end where texels do.
-        let block = if glass.size.iter().all(|n| n % Self::BLOCK == 0) {
-            Self::BLOCK
-        } else {
-            1
-        };
-        let [width, height] = glass.size.map(|n| n as usize);
-        let (layers, plane) = (glass.layers.max(1) as usize, width * height);
-        let size = glass.size.map(|n| n / block);
-        let texel = |face: usize, texel: usize| {
+        let plane = glass.size[0] as usize * glass.size[1] as usize;
+        let layers = glass.layers as usize;
+        let texel = |texel: usize| {
+            let (face, place) = (texel / plane, texel % plane);
             let layer = |layer: usize| {
-                let [r, g, b, depth] = glass.texels[(face * layers + layer) * plane + texel];
+                let [r, g, b, depth] = glass.texels[(face * layers + layer) * plane + place];
                 (near_is_one(depth), reals([r, g, b]))
             };
             Block::of_layers((0..layers).map(layer))
         };
-        let block = block as usize;
-        let row = |(i, row): (usize, &mut [Block])| {
-            let (face, first) = (i / size[1] as usize, i % size[1] as usize * block);
-            for (column, united) in row.iter_mut().enumerate() {
-                let rows = first..first + block;
-                let texels =
-                    rows.flat_map(|y| (0..block).map(move |x| y * width + column * block + x));
-                let all = texels.map(|at| texel(face, at)).reduce(Block::unite);
-                *united = all.unwrap_or(Block::CLEAR);
-            }
+        let faces = glass.texels.len() / (plane * layers).max(1);
+        let mut levels: Vec<Level> = Vec::new();
+        let mut next = Level::over(faces, glass.size, texel);
+        while let Some(level) = next {
+            next = Level::over(faces, level.size, |block| level.blocks[block]);
+            levels.push(level);
+        }
+        levels.reverse();
+        Self { levels }
+    }
+
+    /// A level, 0 that of the largest blocks; `None` past that of the smallest.
+    pub(super) fn level(&self, level: usize) -> Option<&Level> {
+        self.levels.get(level)
+    }
+}
+
+impl Level {
+    /// Parts a side of a block.
+    const PARTS: usize = 4;
+
+    /// Blocks over parts, so many a face, numbered face by face, row by row. `None` where they do not end where parts do.
+    fn over(faces: usize, parts: [u32; 2], part: impl Fn(usize) -> Block + Sync) -> Option<Self> {
+        let [width, height] = parts.map(|n| n as usize);
+        if width == 0 || [width, height].iter().any(|n| n % Self::PARTS != 0) {
+            return None;
+        }
+        let row_of_blocks = |row: usize| {
+            (0..width / Self::PARTS).map(move |column| (Self::PARTS * row, Self::PARTS * column))
         };
-        let faces = glass.texels.len() / (plane * layers);
-        let mut blocks = vec![Block::CLEAR; faces * size[0] as usize * size[1] as usize];
-        blocks
-            .par_chunks_mut(size[0] as usize)
-            .enumerate()
-            .for_each(row);
-        Self { size, blocks }
+        let unite = |(row, column): (usize, usize)| {
+            let rows = row..row + Self::PARTS;
+            let parts = rows.flat_map(|y| (0..Self::PARTS).map(move |x| y * width + column + x));
+            parts.map(&part).reduce(Block::unite)
+        };
+        let rows = (0..faces * height / Self::PARTS).into_par_iter();
+        Some(Self {
+            size: [width, height].map(|n| (n / Self::PARTS) as u32),
+            blocks: rows
+                .flat_map_iter(row_of_blocks)
+                .filter_map(unite)
+                .collect(),
+        })
     }
 
     /// A block of a face.

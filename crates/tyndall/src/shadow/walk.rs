@@ -56,7 +56,7 @@ impl RayOnMap<'_> {
         if self.shadows.glass.is_some() {
             for (piece, part) in self.pieces_of(part) {
                 self.shadows
-                    .walk_glass(piece.face, &piece.ray, part, shades);
+                    .walk_glass(0, piece.face, &piece.ray, part, shades);
             }
         }
     }
@@ -146,24 +146,37 @@ impl Shadows<'_> {
         });
     }
 
-    fn walk_glass(&self, face: usize, ray: &ClipRay, span: [f64; 2], shades: &mut Vec<Shade>) {
-        let Some(glass) = self.glass else { return };
-        for_each_texel(ray, span, self.panes.size, |block, span| {
+    /// Over the glass's blocks from a level down; texel by texel where none can tell.
+    fn walk_glass(
+        &self,
+        level: usize,
+        face: usize,
+        ray: &ClipRay,
+        span: [f64; 2],
+        shades: &mut Vec<Shade>,
+    ) {
+        let Some(blocks) = self.panes.level(level) else {
+            return self.walk_layers(face, ray, span, shades);
+        };
+        for_each_texel(ray, span, blocks.size, |block, span| {
             let margins = |depth| span.map(|s| ray.margin(s, depth));
-            if let Some(tint) = self.panes.block(face, block).tint_of(margins) {
-                if tint != DVec3::ONE {
+            match blocks.block(face, block).tint_of(margins) {
+                Some(DVec3::ONE) => {}
+                Some(tint) => push(shades, span, tint),
+                None => self.walk_glass(level + 1, face, ray, span, shades),
+            }
+        });
+    }
+
+    fn walk_layers(&self, face: usize, ray: &ClipRay, span: [f64; 2], shades: &mut Vec<Shade>) {
+        let Some(glass) = self.glass else { return };
+        for_each_texel(ray, span, glass.size, |texel, [from, to]| {
+            for layer in 0..glass.layers {
+                let (depth, tint) = self.glass_layer(glass, face, layer, texel);
+                if let Some(span) = behind(ray, depth, [from, to]) {
                     push(shades, span, tint);
                 }
-                return;
             }
-            for_each_texel(ray, span, glass.size, |texel, [from, to]| {
-                for layer in 0..glass.layers {
-                    let (depth, tint) = self.glass_layer(glass, face, layer, texel);
-                    if let Some(span) = behind(ray, depth, [from, to]) {
-                        push(shades, span, tint);
-                    }
-                }
-            });
         });
     }
 }
