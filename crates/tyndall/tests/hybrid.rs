@@ -145,7 +145,13 @@ fn shadowed(ray: &Ray, emitter: &Emitter, triangles: &[[DVec3; 3]]) -> Option<[f
     })
 }
 
-/// The output of `hybrid` with these occluders.
+fn mesh(gpu: &TestDevice, soup: &Soup) -> OccluderMesh {
+    let positions: Vec<[f32; 3]> = soup.iter().flatten().map(|p| p.to_array()).collect();
+    let indices: Vec<u32> = (0..positions.len() as u32).collect();
+    OccluderMesh::new(&gpu.device, &positions, &indices).expect("a good mesh")
+}
+
+/// The output of `hybrid` in a world.
 fn output(
     gpu: &TestDevice,
     effect: &Effect,
@@ -153,30 +159,34 @@ fn output(
     world: &[Placed],
     technique: Technique,
 ) -> Vec<[f32; 4]> {
-    let meshes: Vec<OccluderMesh> = world
-        .iter()
-        .map(|placed| {
-            let positions: Vec<[f32; 3]> =
-                placed.soup.iter().flatten().map(|p| p.to_array()).collect();
-            let indices: Vec<u32> = (0..positions.len() as u32).collect();
-            OccluderMesh::new(&gpu.device, &positions, &indices).expect("a good mesh")
-        })
-        .collect();
-    let occluders: Vec<Occluder<'_>> = meshes
-        .iter()
-        .zip(world)
-        .map(|(mesh, placed)| Occluder {
-            mesh,
-            world_from_mesh: Mat4::from(placed.place).to_cols_array_2d(),
-        })
-        .collect();
+    let meshes: Vec<OccluderMesh> = world.iter().map(|placed| mesh(gpu, &placed.soup)).collect();
+    let places = world.iter().map(|placed| placed.place);
+    let occluders: Vec<Occluder<'_>> = meshes.iter().zip(places).map(occluder).collect();
+    output_of(gpu, effect, stage, &occluders, technique)
+}
+
+fn occluder((mesh, place): (&OccluderMesh, Affine3A)) -> Occluder<'_> {
+    Occluder {
+        mesh,
+        world_from_mesh: Mat4::from(place).to_cols_array_2d(),
+    }
+}
+
+/// The output of `hybrid` with these occluders.
+fn output_of(
+    gpu: &TestDevice,
+    effect: &Effect,
+    stage: &Stage,
+    occluders: &[Occluder<'_>],
+    technique: Technique,
+) -> Vec<[f32; 4]> {
     let frame = stage.frame.clone();
     let frame_by = TechniqueChoice::from(technique);
     let uploaded = on::Uploaded::new(gpu, stage);
     let mut lights = uploaded.light_inputs();
     for light in &mut lights {
         *light = LightInputs {
-            occluders: Some(&occluders),
+            occluders: Some(occluders),
             ..*light
         };
     }
@@ -268,6 +278,35 @@ fn bounds_hold_every_shadow() {
         "{shadows} {rays_without}"
     );
     assert!(spare < 0.3, "{spare}");
+}
+
+/// More places of one mesh than a dispatch may have layers: the last of them is looked at as if it were alone.
+#[test]
+fn no_place_of_many_is_left_out() {
+    const PLACES: usize = 66_000;
+    let Some(gpu) = device_or_skip("many occluders of one mesh") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    let bounds = technique("hybrid", &[("show", Value::Word("bounds".into()))]);
+    let mut stage = plain_stages().swap_remove(0);
+    stage.frame.lights[0].shadow = None;
+    stage.lights[0].shadow_map = None;
+    let block = mesh(gpu, &block());
+    // Specks, far off where no ray gets.
+    let far = Affine3A::from_scale_rotation_translation(
+        Vec3::splat(1e-3),
+        Quat::IDENTITY,
+        Vec3::new(0.0, -5e3, 0.0),
+    );
+    let near = Affine3A::from_scale(Vec3::splat(0.7));
+    let mut occluders = vec![occluder((&block, far)); PLACES];
+    occluders.push(occluder((&block, near)));
+    let [many, alone] = [&occluders[..], &occluders[PLACES..]]
+        .map(|o| output_of(gpu, &effect, &stage, o, bounds.clone()));
+    let without = output_of(gpu, &effect, &stage, &[], bounds);
+    assert!(many == alone, "the last of {PLACES} is not as it is alone");
+    assert!(alone != without, "{} sees no shadow", stage.name);
 }
 
 fn of_the_map() -> Technique {

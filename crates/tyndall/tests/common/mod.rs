@@ -36,7 +36,7 @@ pub(crate) struct Stage {
 }
 
 /// The textures of one light.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct StageLight {
     pub(crate) shadow_map: Option<ShadowMap>,
     pub(crate) glass: Option<GlassMap>,
@@ -102,6 +102,13 @@ impl Stage {
     }
 
     /// In-scatter by the CPU backend.
+    /// The stage in another window: its depths are strewn over it.
+    pub(crate) fn sized(mut self, [width, height]: [u32; 2]) -> Self {
+        let depths = self.depth.iter().copied().cycle();
+        self.depth = depths.take((width * height) as usize).collect();
+        self
+    }
+
     pub(crate) fn on_cpu(&self, technique: Technique) -> Picture {
         let frame = self.frame.clone();
         let frame_by = TechniqueChoice::from(technique);

@@ -36,6 +36,9 @@ block! {
 /// The most workgroups in a row of a dispatch: WebGPU allows 65 535 in a direction.
 pub(super) const MAX_COLUMNS: u32 = 32_768;
 
+/// The most places of a run, which are layers of its dispatches.
+const MAX_PLACES: usize = 32_768;
+
 /// Names of a light's buffers.
 pub(crate) struct Names {
     pub(crate) places: &'static str,
@@ -153,11 +156,12 @@ impl<'a> Volumes<'a> {
     }
 }
 
-/// Occluders of one mesh that stand side by side.
+/// Occluders of one mesh that stand side by side, as many as a dispatch has layers at most.
 fn runs<'a>(occluders: &'a [Occluder<'a>]) -> Vec<Run<'a>> {
     let mut start = 0;
     occluders
         .chunk_by(|a, b| a.mesh.corners == b.mesh.corners)
+        .flat_map(|of_mesh| of_mesh.chunks(MAX_PLACES))
         .map(move |run| {
             let places = start..start + run.len() as u32;
             start = places.end;

@@ -164,3 +164,42 @@ pub(super) fn texture(texture: &wgpu::TextureView) -> BindingResource<'_> {
 pub(super) fn buffer(buffer: &wgpu::Buffer) -> BindingResource<'_> {
     buffer.as_entire_binding()
 }
+
+#[cfg(test)]
+mod tests {
+    use tyndall_testkit::{device::device_or_skip, samples, wgsl};
+
+    use crate::shader::{constant, tests::harness};
+
+    /// The largest list is one of all pixels of a large texture.
+    #[test]
+    fn every_entry_of_a_list_has_an_invocation() {
+        let Some(gpu) = device_or_skip("workgroups that march a list") else {
+            return;
+        };
+        let imports = "
+import tyndall::techniques::epipolar_sampling::common::{sampling_march_entry, sampling_march_groups};
+";
+        let module = harness(imports, &[], &[]);
+        let [group, columns] = ["SAMPLING_MARCH_GROUP", "SAMPLING_MARCH_COLUMNS"].map(constant);
+        let row = (group * columns) as f32;
+        // Single precision holds these lengths.
+        let mut inputs = samples::in_box(9, 500, [1.0..=16_777_216.0_f32]);
+        inputs.extend([1.0, 64.0, 65.0, row, row + 1.0, 2.0 * row].map(|n| [n]));
+        let expression = "vec2f(sampling_march_groups(u32(x[0]))), \
+             f32(sampling_march_entry(vec3u(SAMPLING_MARCH_COLUMNS * SAMPLING_MARCH_GROUP - 1u, 0u, 0u))), \
+             f32(sampling_march_entry(vec3u(0u, 1u, 0u)))";
+        let found = wgsl::evaluate(gpu, &[&module], expression, &inputs).expect("the shader runs");
+        for ([count], [x, y, last, next]) in inputs.iter().zip(found) {
+            let count = count.floor();
+            assert!(x <= 65_535.0 && y <= 65_535.0, "{count}: {x} x {y}");
+            assert!(y == 1.0 || x == columns as f32, "{count}: {x} x {y}");
+            let entries = group as f32 * x * y;
+            assert!(
+                entries >= count && entries - count < row,
+                "{count}: {x} x {y}"
+            );
+            assert_eq!([last + 1.0, next], [row; 2]);
+        }
+    }
+}
