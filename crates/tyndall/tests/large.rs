@@ -18,7 +18,7 @@ fn cheap(name: &str) -> Technique {
     match name {
         "ray-march" | "hybrid" => technique(name, &[steps(64)]),
         "epipolar" => technique(name, &[whole("slices", 0), whole("samples", 0)]),
-        "ivsv" => technique(name, &[whole("resolution", 32)]),
+        "ivsv" => technique(name, &[whole("resolution", 64)]),
         _ => technique(name, &[]),
     }
 }
