@@ -332,6 +332,37 @@ fn scenes_of_any_size_look_the_same() {
     }
 }
 
+/// Voxels take rays along the light by their ends alone: an orthographic camera's, whose pixels are metres wide, must not count as such.
+#[cfg(feature = "gpu")]
+#[test]
+fn voxels_of_the_sun_look_the_same_at_any_size_on_parallel_rays() {
+    use common::gpu as on;
+    let Some(gpu) = tyndall_testkit::device::device_or_skip("parallel rays of any length") else {
+        return;
+    };
+    let effect = on::effect(gpu);
+    let is_flat = |stage: &Stage| {
+        matches!(
+            stage.frame.camera.projection,
+            Projection::Orthographic { .. }
+        )
+    };
+    let is_sun =
+        |stage: &Stage| matches!(stage.frame.lights[0].emitter, Emitter::Directional { .. });
+    let mut stages = stages();
+    stages.retain(|stage| is_flat(stage) && is_sun(stage));
+    assert!(!stages.is_empty());
+    for stage in stages {
+        let picture = |stage: &Stage| on::on_gpu(gpu, &effect, stage, technique("vsv", &[]));
+        let truth = picture(&stage);
+        for scale in SCALES {
+            let error = error(&picture(&scaled(&stage, scale)), &truth);
+            println!("{}, {scale}: {error:.1e}", stage.name);
+            assert!(error < 1e-3, "{}, {scale}: {error:e}", stage.name);
+        }
+    }
+}
+
 #[cfg(feature = "gpu")]
 #[test]
 fn scenes_of_any_size_look_the_same_on_the_gpu() {
