@@ -121,7 +121,7 @@ pub(super) const SUITES: [Suite; 7] = [
         name: "poses",
         about: "every technique from random places: its errors, and the worst that it states",
         tables: Tables::Poses(poses::Poses {
-            poses: 60,
+            poses: 20,
             size: [160, 120],
         }),
     },

@@ -128,7 +128,7 @@ mod tests {
                 first: [0, 3],
             },
             Sparse {
-                step: 3,
+                step: 2,
                 first: [1, 0],
             },
         ] {
