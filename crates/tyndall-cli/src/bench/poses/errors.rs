@@ -6,7 +6,7 @@ use crate::{measure::Sparse, picture::Picture};
 const BINS: usize = 40;
 /// The exponents of ten of the smallest error that is told from 0, and of the largest of a finite one's bin.
 const EXPONENTS: [i32; 2] = [-9, 9];
-/// A picture whose mean is a smaller share than this of what it would be if nothing blocked the light counts as dark.
+/// Pixels and pictures that have a smaller share than this of what they would have if nothing blocked the light count as dark.
 const DARK: f64 = 0.01;
 
 /// Errors of a technique's pixels.
@@ -36,7 +36,7 @@ impl Errors {
         let is_broken = |pixel: &&[f32; 3]| !pixel.iter().all(|x| x.is_finite());
         self.not_finite += picture.pixels.iter().filter(is_broken).count() as u64;
         let found = truth.sparse.of_picture(picture);
-        for (index, (found, truth_there)) in found.pixels.iter().zip(truth.pixels()).enumerate() {
+        for (index, (found, truth_there)) in found.pixels.iter().zip(&truth.pixels).enumerate() {
             let error = truth_there.error_of(found);
             if error > self.largest.error {
                 let pixel = truth.sparse.place(index, picture.size[0]);
@@ -94,10 +94,8 @@ fn end_of(bin: usize) -> f64 {
 
 /// Some pixels of a picture that are taken for true, and the light that their errors are relative to.
 pub(super) struct Truth {
-    picture: Picture,
+    pixels: Vec<TruePixel>,
     sparse: Sparse,
-    /// The least light that an error is relative to.
-    least: f64,
 }
 
 /// A pixel of the truth.
@@ -107,22 +105,21 @@ struct TruePixel {
 }
 
 impl Truth {
-    /// Errors are relative to the pixel's own light, to the picture's mean, or to a hundredth of the `unshadowed` picture's mean,
-    /// whichever is most.
-    pub(super) fn new(picture: Picture, unshadowed: &Picture, sparse: Sparse) -> Self {
-        let least = mean(&picture).max(DARK * mean(unshadowed));
+    /// Errors are relative to the pixel's own light, to the picture's mean, or to a hundredth of what both would be if nothing
+    /// blocked the light, whichever is most. So a dark pixel that is taken for lit is 100 wrong at most.
+    pub(super) fn new(picture: &Picture, unshadowed: &Picture, sparse: Sparse) -> Self {
+        let least = mean(picture).max(DARK * mean(unshadowed));
+        let brightest = |light: &[f32; 3]| light.map(f64::from).into_iter().fold(0.0, f64::max);
+        let pixels = picture.pixels.iter().zip(&unshadowed.pixels);
         Self {
-            picture,
+            pixels: pixels
+                .map(|(light, lit)| TruePixel {
+                    light: *light,
+                    scale: least.max(brightest(light)).max(DARK * brightest(lit)),
+                })
+                .collect(),
             sparse,
-            least,
         }
-    }
-
-    fn pixels(&self) -> impl Iterator<Item = TruePixel> {
-        self.picture.pixels.iter().map(|&light| TruePixel {
-            light,
-            scale: light.map(f64::from).into_iter().fold(self.least, f64::max),
-        })
     }
 }
 
@@ -165,8 +162,8 @@ mod tests {
     fn errors_are_found_placed_and_counted() {
         // The mean of pixels and channels is 1.
         let truth = Truth::new(
-            picture([2, 1], &[2.0, 4.0]),
-            &picture([1, 1], &[3.0]),
+            &picture([2, 1], &[2.0, 4.0]),
+            &picture([2, 1], &[2.0, 4.0]),
             SPARSE,
         );
         let found = [f32::NAN, 2.1, f32::INFINITY, 3.0, 0.0, 0.0, 0.0, 0.0];
@@ -183,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_compared_pixel_that_is_not_finite_is_past_every_error() {
-        let truth = Truth::new(picture([1, 1], &[1.0]), &picture([1, 1], &[1.0]), SPARSE);
+        let truth = Truth::new(&picture([1, 1], &[1.0]), &picture([1, 1], &[1.0]), SPARSE);
         for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let mut errors = Errors::default();
             errors.add(0, &picture([2, 2], &[0.0, wrong, 0.0, 0.0]), &truth);
@@ -196,7 +193,7 @@ mod tests {
 
     #[test]
     fn a_dark_picture_is_measured_by_what_nothing_would_block() {
-        let truth = Truth::new(picture([1, 1], &[0.0]), &picture([1, 1], &[300.0]), SPARSE);
+        let truth = Truth::new(&picture([1, 1], &[0.0]), &picture([1, 1], &[300.0]), SPARSE);
         let mut errors = Errors::default();
         errors.add(0, &picture([2, 2], &[0.0, 0.5, 0.0, 0.0]), &truth);
         assert!((errors.largest.error - 0.5).abs() < 1e-6);

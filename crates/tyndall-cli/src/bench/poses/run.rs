@@ -77,7 +77,7 @@ pub(in crate::bench) fn run(
             suite.poses, suite.size[0], suite.size[1]
         ),
         "errors against the reference: of the same shadow map, of panels traced; relative to the pixel, to its picture's mean, or to \
-         a hundredth of the mean without shadows, whichever is most"
+         a hundredth of what they would be without shadows, whichever is most"
             .to_owned(),
         "p99: of the scene where it is largest; pixels past it: more wrong than the worst, and those by which over 1 % of a scene's \
          are more wrong than the bound of p99"
@@ -190,7 +190,7 @@ fn truth(drawn: &DrawnFrame<'_>, pose: usize) -> Result<Truth, Failure> {
     };
     let picture = drawn.sparse_reference(visibility, sparse)?;
     Ok(Truth::new(
-        picture,
+        &picture,
         &drawn.sparse_unshadowed(sparse)?,
         sparse,
     ))
