@@ -195,7 +195,7 @@ mod tests {
     fn a_dark_picture_is_measured_by_what_nothing_would_block() {
         let truth = Truth::new(&picture([1, 1], &[0.0]), &picture([1, 1], &[300.0]), SPARSE);
         let mut errors = Errors::default();
-        errors.add(0, &picture([2, 2], &[0.0, 0.5, 0.0, 0.0]), &truth);
-        assert!((errors.largest.error - 0.5).abs() < 1e-6);
+        errors.add(0, &picture([2, 2], &[0.0, 300.0, 0.0, 0.0]), &truth);
+        assert!((errors.largest.error - 100.0).abs() < 1e-3);
     }
 }
