@@ -168,7 +168,8 @@ const BENCH_HELP: &str = "\
 Tables go to standard output, progress to standard error. Times are the device's timestamps, summed over a frame's passes
 (on the CPU: wall-clock time): median [lower quartile, upper quartile] of at least 10 frames, fewer where a frame takes
 seconds. Frames of all techniques of a table take turns. `x limit` is the time over that of a pass that reads depth buffer
-and shadow map once and writes the output once. Scenes that are missing are stood in for by built-in ones, which is said.";
+and shadow map once and writes the output once. Scenes that are missing are stood in for by built-in ones, which is said.
+`poses` fails where a value is not finite or a pixel is more wrong than its technique states.";
 
 /// Arguments of `tyndall view`.
 #[derive(Clone, Debug, Args)]

@@ -89,6 +89,7 @@ pub(super) fn run(
     Ok(Report {
         tables,
         missing: Vec::new(),
+        faults: Vec::new(),
     })
 }
 

@@ -26,6 +26,8 @@ pub(super) struct Report {
     pub(super) tables: Vec<Table>,
     /// Names of the paper's techniques that are not there.
     pub(super) missing: Vec<&'static str>,
+    /// Results that must not be, in words; the command fails where there are any.
+    pub(super) faults: Vec<String>,
 }
 
 /// Machine, command and date, without which no number means anything.
@@ -100,6 +102,7 @@ impl Report {
             "suite": name,
             "tables": self.tables.iter().map(Table::to_json).collect::<Vec<_>>(),
             "missing": self.missing,
+            "faults": self.faults,
         })
     }
 }

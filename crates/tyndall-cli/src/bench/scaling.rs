@@ -84,6 +84,7 @@ pub(super) fn run(bench: &Bench, progress: &mut Progress) -> Result<Report, Fail
     Ok(Report {
         tables: vec![exponents(&points), measured(&points)],
         missing: Vec::new(),
+        faults: Vec::new(),
     })
 }
 

@@ -67,6 +67,14 @@ pub(super) const SIBENIKTEX: Subject = Subject {
     textured: true,
     ..SIBENIK
 };
+pub(super) const CHURCH: Subject = subject("church", None, "builtin:church");
+pub(super) const BLIND: Subject = subject("room", None, "builtin:slats");
+pub(super) const MOUNTAINS: Subject = subject("mountains", None, "builtin:terrain");
+pub(super) const BOX_WALL: Subject = subject(
+    "box before a wall",
+    asset!("box-wall.glb", "box-wall"),
+    "builtin:slats",
+);
 pub(super) const TREES: Subject = subject("TREES", None, "builtin:forest");
 pub(super) const TERRAIN: Subject = subject(
     "TERRAIN",
@@ -185,6 +193,11 @@ impl Subject {
         Ok((shot.map_err(Failure::input)?, what))
     }
 
+    /// Whether it has a file that is not there.
+    pub(super) fn is_stood_in_for(&self, assets: Option<&Path>) -> bool {
+        self.asset.is_some() && self.asset_in(assets).is_none()
+    }
+
     fn asset_in<'a>(&self, assets: Option<&'a Path>) -> Option<(&'a Path, Asset)> {
         let asset = self.asset?;
         if asset.file.starts_with(BUILTIN) {
@@ -215,7 +228,7 @@ fn load_texture(file: Option<PathBuf>) -> Result<LightTexture, Failure> {
 }
 
 /// Rings of saturated colours.
-fn coloured_rings() -> LightTexture {
+pub(super) fn coloured_rings() -> LightTexture {
     const SIDE: u32 = 256;
     const RINGS: f32 = 6.0;
     const COLOURS: [[f32; 3]; 4] = [
@@ -237,32 +250,53 @@ fn coloured_rings() -> LightTexture {
 
 /// The scene's middle and the radius of the sphere round it \[m].
 pub(super) fn sphere(shot_frame: &ShotFrame) -> (Vec3, f32) {
-    let bounds = shot_frame.tracer.geometry().bounds();
-    let bounds = bounds.unwrap_or(Bounds {
-        min: Vec3::NEG_ONE,
-        max: Vec3::ONE,
-    });
+    let bounds = bounds(shot_frame);
     (bounds.center(), 0.5 * bounds.extent().length())
 }
 
-/// The sun through a texture that covers all of the scene.
-fn with_texture(shot_frame: &ShotFrame, texture: LightTexture) -> ShotFrame {
+/// The box round the scene; one about the origin where it is empty \[m].
+pub(super) fn bounds(shot_frame: &ShotFrame) -> Bounds {
+    let bounds = shot_frame.tracer.geometry().bounds();
+    bounds.unwrap_or(Bounds {
+        min: Vec3::NEG_ONE,
+        max: Vec3::ONE,
+    })
+}
+
+/// The first light through a texture: one that covers all of the scene, the cone, all directions or the rectangle.
+pub(super) fn with_texture(shot_frame: &ShotFrame, texture: LightTexture) -> ShotFrame {
     let mut shot_frame = shot_frame.clone();
     let (center, radius) = sphere(&shot_frame);
     if let (Some(light), Some(extra)) = (
         shot_frame.frame.lights.first_mut(),
         shot_frame.lights.first_mut(),
-    ) && let Emitter::Directional { direction, .. } = light.emitter
-    {
-        let (x, y) = Vec3::from(direction).normalize().any_orthonormal_pair();
-        light.texture = Some(TexturePlacement::Parallelogram {
-            center: center.to_array(),
-            edge_x: (2.0 * radius * x).to_array(),
-            edge_y: (2.0 * radius * y).to_array(),
-        });
+    ) {
+        light.texture = Some(placement(&light.emitter, center, radius));
         extra.texture = Some(Arc::new(texture));
     }
     shot_frame
+}
+
+fn placement(emitter: &Emitter, center: Vec3, radius: f32) -> TexturePlacement {
+    let across = |direction: [f32; 3]| Vec3::from(direction).normalize().any_orthonormal_pair();
+    match *emitter {
+        Emitter::Directional { direction, .. } => {
+            let (x, y) = across(direction);
+            TexturePlacement::Parallelogram {
+                center: center.to_array(),
+                edge_x: (2.0 * radius * x).to_array(),
+                edge_y: (2.0 * radius * y).to_array(),
+            }
+        }
+        Emitter::Spot { direction, .. } => TexturePlacement::Cone {
+            up: across(direction).0.to_array(),
+        },
+        Emitter::Point { .. } => TexturePlacement::Sphere {
+            up: Vec3::Y.to_array(),
+            forward: Vec3::Z.to_array(),
+        },
+        Emitter::Rect { .. } => TexturePlacement::Rectangle,
+    }
 }
 
 /// The sun replaced by a spot light, far away in the same direction, whose cone holds all of the scene.

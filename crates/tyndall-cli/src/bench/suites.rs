@@ -28,7 +28,7 @@ enum Tables {
     Films(lin::Films),
     AreaLights(wyman_dai::AreaLights),
     Scaling,
-    Poses,
+    Poses(poses::Poses),
 }
 
 /// Tables that belong together.
@@ -119,8 +119,11 @@ pub(super) const SUITES: [Suite; 7] = [
     },
     Suite {
         name: "poses",
-        about: "min-max and epipolar from random places: their largest errors beside brute force's",
-        tables: Tables::Poses,
+        about: "every technique from random places: its errors, and the worst that it states",
+        tables: Tables::Poses(poses::Poses {
+            poses: 20,
+            size: [160, 120],
+        }),
     },
 ];
 
@@ -148,17 +151,22 @@ pub(crate) fn run(
     };
     let header = header(&bench);
     print(&header_text(&header))?;
-    let mut suites = Vec::new();
+    let (mut suites, mut faults) = (Vec::new(), Vec::new());
     let chosen = |known: &&Suite| suite.is_none_or(|name| name == known.name);
     for suite in SUITES.iter().filter(chosen) {
         let (start, mut progress) = (Instant::now(), Progress::default());
         let report = suite.tables.measure(&bench, &mut progress)?;
         print(&report.to_text(suite.name, suite.about, start.elapsed()))?;
         suites.push(report.to_json(suite.name));
+        faults.extend(report.faults);
     }
-    match json {
-        Some(file) => write_json(file, &header, suites),
-        None => Ok(()),
+    if let Some(file) = json {
+        write_json(file, &header, suites)?;
+    }
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Input(anyhow::anyhow!("{}", faults.join("\n"))))
     }
 }
 
@@ -171,7 +179,7 @@ impl Tables {
             Self::Films(films) => lin::run(films, bench, progress),
             Self::AreaLights(suite) => wyman_dai::run(suite, bench, progress),
             Self::Scaling => scaling::run(bench, progress),
-            Self::Poses => poses::run(poses::POSES, bench, progress),
+            Self::Poses(suite) => poses::run(suite, bench, progress),
         }
     }
 }

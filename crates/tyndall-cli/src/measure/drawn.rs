@@ -4,7 +4,7 @@ use std::{borrow::Cow, cell::OnceCell};
 
 use tyndall::{
     cpu::CpuLightInputs,
-    frame::{Camera, LightKind},
+    frame::Camera,
     techniques::{Backends, TABLE, Technique, TechniqueInfo, reference},
 };
 
@@ -84,8 +84,11 @@ impl<'a> DrawnFrame<'a> {
         shot_frame.frame.camera = camera;
         match &mut self.drawn {
             Drawn::Gpu(device, read) => {
-                *read = OnceCell::new();
-                device.draw_g_buffer(shot_frame)
+                device.draw_g_buffer(shot_frame)?;
+                if let Some(buffers) = read.get_mut() {
+                    buffers.depth = device.read_depth()?;
+                }
+                Ok(())
             }
             Drawn::Cpu(buffers) => {
                 buffers.depth = depth(shot_frame, &|_, _| ());
@@ -112,15 +115,20 @@ impl<'a> DrawnFrame<'a> {
     /// The place where a technique runs: the GPU where both can; `None` where it can't do a light of the shot, or needs a
     /// device and there is none.
     pub fn place(&self, technique: &TechniqueInfo) -> Option<Place> {
-        let mut lights = self.shot_frame.frame.lights.iter();
-        if !lights.all(|light| technique.lights.contains(&LightKind::of(&light.emitter))) {
-            return None;
-        }
-        match (technique.backends, self.device()) {
-            (Backends::Gpu | Backends::Both, Some(_)) => Some(Place::Gpu),
-            (Backends::Cpu | Backends::Both, _) => Some(Place::Cpu),
-            (Backends::Gpu, None) => None,
-        }
+        self.places(technique).first().copied()
+    }
+
+    /// Every place where a technique can do the kinds of the shot's lights, the GPU first.
+    pub fn places(&self, technique: &TechniqueInfo) -> Vec<Place> {
+        let lights = &self.shot_frame.frame.lights;
+        let can = |backend| {
+            lights
+                .iter()
+                .all(|light| technique.can(light.kind(), backend))
+        };
+        let on_gpu = (self.device().is_some() && can(Backends::Gpu)).then_some(Place::Gpu);
+        let on_cpu = can(Backends::Cpu).then_some(Place::Cpu);
+        on_gpu.into_iter().chain(on_cpu).collect()
     }
 
     /// In-scattered radiance by a technique [W/(m^2 sr)].
@@ -134,6 +142,17 @@ impl<'a> DrawnFrame<'a> {
                 view.view.in_scatter(device.shot.gpu)
             }
             None => self.in_scatter_on_cpu(technique),
+        }
+    }
+
+    /// In-scattered radiance by a technique in one of its [places](Self::places) [W/(m^2 sr)].
+    ///
+    /// # Errors
+    /// [`Failure`], as for [`DrawnFrame::in_scatter`].
+    pub fn in_scatter_at(&self, technique: &Technique, place: Place) -> Result<Picture, Failure> {
+        match place {
+            Place::Gpu => self.in_scatter(technique),
+            Place::Cpu => self.in_scatter_on_cpu(technique),
         }
     }
 
@@ -195,15 +214,8 @@ impl<'a> DrawnFrame<'a> {
     /// [`Failure`], as for [`DrawnFrame::in_scatter`].
     pub fn in_scatter_on_cpu(&self, technique: &Technique) -> Result<Picture, Failure> {
         let buffers = self.buffers()?;
-        let mut lights = cpu::light_inputs(&self.shot_frame, &buffers.lights);
-        if !TechniqueInputs::of(std::slice::from_ref(technique)).shadow_maps {
-            for light in &mut lights {
-                *light = CpuLightInputs {
-                    texture: light.texture,
-                    ..Default::default()
-                };
-            }
-        }
+        let inputs = TechniqueInputs::of(std::slice::from_ref(technique));
+        let lights = self.light_inputs(buffers, inputs.shadow_maps);
         let (shot_frame, depth) = (&self.shot_frame, &buffers.depth);
         let techniques = technique.clone().into();
         let pixels = cpu::in_scatter(shot_frame, &techniques, depth, &lights, &|_, _| ())?;
@@ -211,6 +223,24 @@ impl<'a> DrawnFrame<'a> {
             size: self.shot_frame.size,
             pixels,
         })
+    }
+
+    /// The lights' inputs on the CPU; without shadow maps nothing but the scene itself blocks them.
+    pub(super) fn light_inputs<'b>(
+        &'b self,
+        buffers: &'b Buffers,
+        shadow_maps: bool,
+    ) -> Vec<CpuLightInputs<'b>> {
+        let mut lights = cpu::light_inputs(&self.shot_frame, &buffers.lights);
+        if !shadow_maps {
+            for light in &mut lights {
+                *light = CpuLightInputs {
+                    texture: light.texture,
+                    ..Default::default()
+                };
+            }
+        }
+        lights
     }
 
     pub(super) fn device(&self) -> Option<&OnDevice<'a>> {
@@ -257,6 +287,11 @@ impl<'a> OnDevice<'a> {
             Ok(())
         });
         draw.map(|_| ())
+    }
+
+    fn read_depth(&self) -> Result<Vec<f32>, Failure> {
+        let gpu = self.shot.gpu;
+        gpu.errors.else_result(self.shot.world.read_depth(gpu))
     }
 
     fn read(&self) -> Result<Buffers, Failure> {

@@ -11,6 +11,7 @@ mod error;
 mod film;
 mod limit;
 mod place;
+mod sparse;
 mod timing;
 mod turns;
 
@@ -25,5 +26,6 @@ pub use equal::{
 pub use error::error_of;
 pub use film::{Film, TakeFrame};
 pub use place::Place;
+pub use sparse::Sparse;
 pub use timing::{Budget, Spread, Timing, Timings};
 pub use tyndall::techniques::reference::Visibility;

@@ -59,6 +59,7 @@ pub(in crate::bench) fn run(
         return Ok(Report {
             tables: vec![paper::nothing("temporal reuse")],
             missing: Vec::new(),
+            faults: Vec::new(),
         });
     }
     let timed = TIMED.iter().zip(times);
@@ -69,5 +70,6 @@ pub(in crate::bench) fn run(
     Ok(Report {
         tables,
         missing: Vec::new(),
+        faults: Vec::new(),
     })
 }

@@ -31,5 +31,6 @@ pub(in crate::bench) fn run(
     Ok(Report {
         tables,
         missing: paper.techniques.iter().filter(missing).copied().collect(),
+        faults: Vec::new(),
     })
 }

@@ -44,5 +44,6 @@ pub(in crate::bench) fn run(
     Ok(Report {
         tables,
         missing: Vec::new(),
+        faults: Vec::new(),
     })
 }

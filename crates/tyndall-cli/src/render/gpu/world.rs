@@ -199,7 +199,6 @@ impl World {
     /// Reads depth buffer and light maps back, for the CPU to work on the very same. Waits for the device.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Buffers, Failure> {
         let Gpu { device, queue, .. } = gpu;
-        let depth = readback::texture_f32(device, queue, self.g_buffer.depth());
         let light = |light: &LightTargets| {
             let shadow_map = light.shadow_map.as_ref();
             let glass = light.glass.as_ref();
@@ -214,9 +213,15 @@ impl World {
             .map(light)
             .collect::<Result<_, ReadbackError>>();
         Ok(Buffers {
-            depth: depth.map_err(Failure::device)?,
+            depth: self.read_depth(gpu)?,
             lights: lights.map_err(Failure::device)?,
         })
+    }
+
+    /// Reads the depth buffer back. Waits for the device.
+    pub(crate) fn read_depth(&self, gpu: &Gpu) -> Result<Vec<f32>, Failure> {
+        let depth = readback::texture_f32(&gpu.device, &gpu.queue, self.g_buffer.depth());
+        depth.map_err(Failure::device)
     }
 
     /// Textures, by what they are for \[bytes].

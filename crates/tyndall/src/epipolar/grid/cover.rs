@@ -58,10 +58,11 @@ impl EpipolarGrid {
                 (axis, axis.any_orthonormal_pair().into(), Some(distance))
             }
         };
-        let pixel = if orthographic {
-            camera.pixel_side()
-        } else {
-            camera.pixel_angle().sin()
+        // In the unit of `off_axis`. To the sun all orthographic rays have one angle, wide enough where there is a grid.
+        let pixel = match local {
+            _ if !orthographic => camera.pixel_angle().sin(),
+            Some(_) => camera.pixel_side(),
+            None => 0.0,
         };
         let light = match scene.light {
             LightSource::Position(position) => position.into(),
