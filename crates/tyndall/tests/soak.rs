@@ -16,9 +16,9 @@ use tyndall::{
 };
 use tyndall_testkit::device::{TestDevice, device_or_skip, plain_device_or_skip};
 
-/// Bytes that the largest frames of one half may differ by from those of the other.
-const HEAP_SLACK: u64 = 64 << 10;
-const DEVICE_SLACK: u64 = 64 << 10;
+/// Bytes that the largest frames of one half may have over those of the other. Measured on lavapipe: of 320 frames 137 kB of the heap
+/// and 111 kB of the device, of 10,000 frames 26 kB and 1 kB.
+const SLACK: u64 = 256 << 10;
 
 /// Cheap: what is looked for does not hang on a picture's quality.
 fn techniques() -> [Technique; 6] {
@@ -185,11 +185,11 @@ fn soak(gpu: &TestDevice, crowds: &[Stage], frames: u32) {
     eprintln!("{warm} pipelines, {frame} frames: {first:?}, then {second:?}");
     assert!(first.heap > 0 && first.device > 0, "{first:?}");
     assert!(
-        second.heap <= first.heap + HEAP_SLACK,
+        second.heap <= first.heap + SLACK,
         "{first:?}, then {second:?}"
     );
     assert!(
-        second.device <= first.device + DEVICE_SLACK,
+        second.device <= first.device + SLACK,
         "{first:?}, then {second:?}"
     );
 }

@@ -1,6 +1,6 @@
 //! Some of a picture's pixels, for the reference takes seconds for all of them.
 
-use tyndall::{frame::Projection, techniques::Technique};
+use tyndall::techniques::Technique;
 
 use super::{DrawnFrame, Visibility, converged};
 use crate::{failure::Failure, load::ShotFrame, picture::Picture, render::cpu};
@@ -42,20 +42,9 @@ impl Sparse {
     fn frame(self, shot_frame: &ShotFrame) -> ShotFrame {
         let mut sparse = shot_frame.clone();
         sparse.size = shot_frame.size.map(|side| side / self.step);
-        let (Projection::Perspective {
-            half_extent,
-            center,
-            ..
-        }
-        | Projection::Orthographic {
-            half_extent,
-            center,
-            ..
-        }) = &mut sparse.frame.camera.projection;
-        for (i, sign) in [1.0, -1.0].into_iter().enumerate() {
-            let pixels = self.first[i] as f32 + 0.5 - 0.5 * self.step as f32;
-            center[i] += sign * half_extent[i] * 2.0 * pixels / shot_frame.size[i] as f32;
-        }
+        let moved = |i: usize| f64::from(self.first[i]) + 0.5 - 0.5 * f64::from(self.step);
+        let camera = &shot_frame.frame.camera;
+        sparse.frame.camera = camera.jittered(shot_frame.size, [moved(0), -moved(1)]);
         sparse
     }
 }
